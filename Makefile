@@ -1,0 +1,98 @@
+# Two commands are enough: `make run` and `make test`.
+# Needs python3 (3.11 or newer) with pip, make and git; no venv module, no root, no compiler.
+.DEFAULT_GOAL := help
+SHELL := /bin/sh
+
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+STAMP  := $(VENV)/.installed
+
+# uv makes the environment: a bare Debian has no venv module. One wheel, pinned by hash
+# (Linux x86-64 and arm64, macOS x86-64 and arm64: where MuJoCo runs and make is at home).
+UV_VERSION := 0.13.9
+UV_HASHES  := \
+	d7f459fe4fd247d830351c75686d3996ace3c6f3f728eb0e85a30b7ada0cef19 \
+	5435c5ce14a56431208ca0996416d310f1598e8c2c8ba707688985a16bb82dbe \
+	c16ed11e013557536b3e60065f1b912f6407bd6518e041b961e23ef9e6b4fbf5 \
+	66c512266d633bef48384a1f53003f41f2a8e7b36fe6e7fbfd3e0fd52d96fa63
+UV_DIR := .tools/uv-$(UV_VERSION)
+UV     := $(UV_DIR)/bin/uv
+export UV_PYTHON_DOWNLOADS := never
+# Trust what the system's pip trusts: uv's own list lacks the certificates of company proxies.
+ifneq ($(wildcard /etc/ssl/certs/ca-certificates.crt),)
+export UV_SYSTEM_CERTS := true
+endif
+
+# The matrices are small: more threads make it slower, and runs less repeatable.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS      := 1
+export MKL_NUM_THREADS      := 1
+
+.PHONY: help
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+.PHONY: run
+run: setup ## simulate a forward roll, with a progress bar; writes the log and a filmstrip into runs/
+	$(BIN)/rotctl run behaviour=forward_roll_1 --out runs --filmstrip
+
+.PHONY: test
+test: lint ## lint, types, floors, then the fast tests
+	$(BIN)/python -m pytest
+
+.PHONY: setup
+setup: $(STAMP) ## make .venv from requirements.lock (a second call does nothing)
+
+.PHONY: format
+format: setup ## lay the code out and sort the imports
+	$(BIN)/ruff check --fix-only .
+	$(BIN)/ruff format .
+
+.PHONY: lint
+lint: setup ## style, layout, types, floors: changes nothing
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+.PHONY: bench
+bench: setup ## time the control tick
+	$(BIN)/rotctl bench
+
+# The old pins are kept where they still fit; `make lock LOCKFLAGS=--upgrade` renews them all.
+.PHONY: lock
+lock: $(UV) ## remake requirements.lock from pyproject.toml (hashed, free of index addresses)
+	$(UV) pip compile pyproject.toml --extra dev --quiet --universal --python-version 3.11 \
+		--fork-strategy fewest --generate-hashes --no-emit-index-url --no-emit-find-links \
+		--custom-compile-command 'make lock' --output-file requirements.lock $(LOCKFLAGS)
+	@! grep -nE '://|index-url|find-links' requirements.lock
+
+.PHONY: clean
+clean: ## remove the environment, caches and builds (runs/ stays)
+	rm -rf $(VENV) .tools dist build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	find rotctl tests experiments -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
+
+# ---------------------------------------------------------------- set-up
+
+$(UV):
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo "rotctl needs Python 3.11 or newer; '$(PYTHON)' is missing or older." >&2; \
+		echo "Name another one: make $(or $(MAKECMDGOALS),setup) PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -m pip --version >/dev/null 2>&1 || { \
+		echo "rotctl needs pip for $(PYTHON); on Debian: apt install python3-pip" >&2; exit 1; }
+	rm -rf $(UV_DIR) && mkdir -p .tools
+	@printf 'uv==$(UV_VERSION)$(foreach h,$(UV_HASHES), --hash=sha256:$(h))\n' > .tools/uv.txt
+	PIP_ROOT_USER_ACTION=ignore $(PYTHON) -m pip install --quiet --disable-pip-version-check \
+		--no-deps --only-binary :all: --require-hashes --target $(UV_DIR) -r .tools/uv.txt
+
+# `sync` removes what the lock no longer names. antlr4-python3-runtime (of hydra-core) has no
+# wheel: --build-constraints holds its build tools to the lock's hashes too. rotctl itself goes
+# in last, as a link to this folder, built by the hatchling just installed.
+$(STAMP): requirements.lock pyproject.toml | $(UV)
+	test -x $(BIN)/python || $(UV) venv --quiet --clear \
+		--python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV)
+	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes \
+		--build-constraints requirements.lock requirements.lock
+	$(UV) pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	@touch $@

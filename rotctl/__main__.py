@@ -1,0 +1,8 @@
+"""`python -m rotctl` is `rotctl`."""
+
+import sys
+
+from rotctl.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Classes of motion: what each wants of the character at every instant."""

@@ -1,0 +1,111 @@
+"""Continuous rolling, [Brown2013] section 6.
+
+In-plane (about the rolling axis y, along the rolling direction x) the angular velocity and
+the speed are held constant and their integrals are left free; out of plane, AE and AV are
+held at zero and the lateral and vertical velocities are damped. All of that is gains: a
+zero in-plane stiffness leaves the excursion and the distance free.
+"""
+
+import math
+from typing import Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.control import Desired
+from rotctl.mechanics import excursion
+from rotctl.mechanics.excursion import Excursion, ExcursionName
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.motion import Angle, make_pose_pair
+from rotctl.rotations import Array
+from rotctl.settings import STRICT, Finite
+
+ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
+
+
+@validated(frozen=True, config=STRICT)
+class Poses:
+    """Key poses r_a and r_b by joint name, see `rotctl.motion.pose_pair`."""
+
+    a: dict[str, Angle]
+    b: dict[str, Angle]
+
+
+@validated(frozen=True, config=STRICT)
+class RollingSettings:
+    """What Table 1 varies, and the two key poses.
+
+    Attributes:
+        angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
+        speed: commanded in-plane speed of the centre of mass [m/s].
+    """
+
+    name: str
+    kind: Literal["rolling"]
+    angular_velocity: Finite
+    speed: Finite
+    poses: Poses
+    source: str = ""
+    description: str = ""
+
+
+class Rolling:
+    """The rolling behaviour of one run."""
+
+    def __init__(
+        self,
+        settings: RollingSettings,
+        model: Model,
+        excursion_name: ExcursionName,
+        correction_time: float,
+        period: float,
+    ) -> None:
+        """Prepare the poses.
+
+        Args:
+            excursion_name: how AE is measured.
+            correction_time: of the `oriented` excursion [s].
+            period: of the control [s].
+        """
+        self._name = excursion_name
+        self._correction_time = correction_time
+        self._period = period
+        self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * ROLLING_AXIS
+        self._velocity = np.array([settings.speed, 0.0, 0.0])
+        self._poses = make_pose_pair(model, settings.poses.a, settings.poses.b)
+
+    def pose(self, phase: float) -> Array:
+        """The pose (nu,) [rad] a run starts in at that phase: r_a, the tuck."""
+        return self._poses.at(phase)[0]
+
+    def begin(self, phase: float) -> Excursion:
+        """Excursion at the start: phi_0 is the pitch of the pelvis, so phi_y is the phase."""
+        return excursion.start(phase * ROLLING_AXIS)
+
+    def advance(self, before: Excursion, state: State) -> Excursion:
+        """Excursion now, from that of the previous control step."""
+        return excursion.integrate(
+            before,
+            state.momentum.angular_velocity,
+            state.lateral_axis,
+            ROLLING_AXIS,
+            self._period,
+            self._correction_time,
+        )
+
+    def phase(self, now: Excursion) -> float:
+        """Phase theta [rad]: 0 pelvis upright, pi/2 face down, pi on the upper back."""
+        return float(ROLLING_AXIS @ now.angle)
+
+    def desired(self, state: State, now: Excursion) -> Desired:
+        """What rolling wants at this instant."""
+        pose_a, pose_b = self._poses.at(self.phase(now))
+        return Desired(
+            com=state.momentum.com,
+            com_velocity=self._velocity,
+            excursion_error=excursion.error(now, np.zeros(3), ROLLING_AXIS, self._name),
+            angular_velocity=self._angular_velocity,
+            pose_a=pose_a,
+            pose_b=pose_b,
+        )

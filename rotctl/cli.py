@@ -1,0 +1,255 @@
+"""The command line: subcommands that import only what they need."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rotctl import __version__
+from rotctl.errors import InputError, RotctlError
+
+if TYPE_CHECKING:
+    from rotctl.log import RunLog
+
+EPILOG = """\
+examples:
+  rotctl run                                      Forward Roll 1, 20 s, into runs/<run id>/
+  rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
+  rotctl run controller.weights.angular_momentum=8
+  rotctl list                                     what can be chosen
+  rotctl show behaviour=forward_roll_1            the whole config, with these choices
+  rotctl render runs/<run id>/run.h5 --filmstrip roll.png
+  rotctl inspect runs/<run id>/run.h5             what is in a log
+
+exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
+the solver broke down, 2 bad input, 130 interrupted
+"""
+OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    # One BLAS thread: matrices here are small, and runs in parallel are worth more.
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    arguments = _parser().parse_args(argv)
+    try:
+        return int(arguments.command(arguments))
+    except RotctlError as error:
+        print(f"rotctl: {' '.join(str(error).split())}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("rotctl: interrupted; nothing was written", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="rotctl",
+        description="Physics-based rotational character control: a simulated human that rolls.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"rotctl {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    run = commands.add_parser(
+        "run",
+        help="simulate one run and log it",
+        description="Simulate one run into OUT/<run id>/run.h5 and summary.json. The run id is "
+        "a hash of the config: a run that is already there is reported, not redone.",
+    )
+    run.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    run.add_argument("--out", type=Path, default=Path("runs"), help="folder for runs [%(default)s]")
+    run.add_argument("--json", action="store_true", help="print the summary row as JSON on stdout")
+    run.add_argument("--quiet", action="store_true", help="no progress, no notices")
+    run.add_argument("--force", action="store_true", help="redo a run that is already there")
+    run.add_argument("--filmstrip", action="store_true", help="also draw filmstrip.png beside it")
+    run.set_defaults(command=_run)
+
+    render = commands.add_parser(
+        "render",
+        help="draw pictures of a logged run",
+        description="Draw a run from its log alone; nothing is simulated again.",
+    )
+    render.add_argument("log", type=Path, metavar="RUN.h5")
+    render.add_argument("--filmstrip", type=Path, metavar="OUT.png", required=True)
+    render.add_argument("--frames", type=int, default=12, help="number of frames [%(default)s]")
+    render.add_argument("--from", type=float, metavar="S", dest="start", help="first time [s]")
+    render.add_argument("--to", type=float, metavar="S", dest="end", help="last time [s]")
+    render.set_defaults(command=_render)
+
+    listing = commands.add_parser("list", help="config groups and their choices")
+    listing.set_defaults(command=_list)
+
+    show = commands.add_parser("show", help="print the composed config as YAML")
+    show.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    show.set_defaults(command=_show)
+
+    inspect = commands.add_parser(
+        "inspect",
+        help="what is inside a log, and is it whole",
+        description="List a log's datasets with units, its outcome and provenance, and verify "
+        "its checksums.",
+    )
+    inspect.add_argument("log", type=Path, metavar="RUN.h5")
+    inspect.set_defaults(command=_inspect)
+
+    bench = commands.add_parser(
+        "bench",
+        help="where the time goes",
+        description="Measure the split of a control step on the states of a real forward roll.",
+    )
+    bench.add_argument("--repeats", type=int, default=5, help="median over this many [%(default)s]")
+    bench.set_defaults(command=_bench)
+    return parser
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from rotctl.config import load
+    from rotctl.run import LOG_NAME, run
+
+    config = load(arguments.overrides)
+    steps = round(config.duration * config.controller.rate)
+    with tqdm(
+        total=steps,
+        desc=f"{config.behaviour.name} seed {config.seed}",
+        unit="step",
+        disable=arguments.quiet,
+        leave=False,
+        mininterval=0.2 if sys.stderr.isatty() else 10.0,
+    ) as bar:
+        result = run(config, arguments.out, arguments.force, bar.update)
+    if result.already_there and not arguments.quiet:
+        print(f"already there, not redone (--force redoes it): {result.folder}", file=sys.stderr)
+    picture = _filmstrip_beside(result.folder / LOG_NAME) if arguments.filmstrip else ""
+    if arguments.json:
+        import json
+
+        print(json.dumps(result.summary))
+    elif not arguments.quiet:
+        print(_readable(result.summary))
+        print(f"log        {result.folder / LOG_NAME}")
+        if picture:
+            print(f"filmstrip  {picture}")
+    return 1 if result.broke_down else 0
+
+
+def _filmstrip_beside(log: Path) -> str:
+    """Draw a filmstrip if this machine can; say why not otherwise."""
+    from rotctl.log import RunLog
+    from rotctl.report.filmstrip import filmstrip
+
+    out = log.with_name("filmstrip.png")
+    try:
+        filmstrip(RunLog.open(log), out)
+    except InputError as error:
+        print(f"rotctl: no filmstrip: {error}", file=sys.stderr)
+        return ""
+    return str(out)
+
+
+def _render(arguments: argparse.Namespace) -> int:
+    from rotctl.log import RunLog
+    from rotctl.report.filmstrip import filmstrip
+
+    filmstrip(
+        RunLog.open(arguments.log),
+        arguments.filmstrip,
+        frames=arguments.frames,
+        start=arguments.start,
+        end=arguments.end,
+    )
+    print(arguments.filmstrip)
+    return 0
+
+
+def _list(arguments: argparse.Namespace) -> int:
+    from rotctl.listing import groups
+
+    for group, choices in groups().items():
+        print(group)
+        width = max(map(len, choices))
+        for choice, description in choices.items():
+            print(f"  {choice:{width}}  {description}".rstrip())
+    print("\nchoose with GROUP=CHOICE, change a value with KEY=VALUE; see: rotctl show")
+    return 0
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    from rotctl.config import load, to_yaml
+
+    print(to_yaml(load(arguments.overrides)), end="")
+    return 0
+
+
+def _inspect(arguments: argparse.Namespace) -> int:
+    from rotctl.log import RunLog
+
+    log = RunLog.open(arguments.log)
+    print(_described(log))
+    log.verify()
+    print("\nintegrity  complete, checksums match")
+    return 0
+
+
+def _bench(arguments: argparse.Namespace) -> int:
+    from rotctl.bench import bench
+
+    if arguments.repeats < 1:
+        raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
+    print(bench(arguments.repeats))
+    return 0
+
+
+def _readable(summary: dict[str, Any]) -> str:
+    def number(key: str, form: str = ".2f") -> str:
+        value = summary[key]
+        return "-" if value is None else format(value, form)
+
+    verdict = "success" if summary["success"] else f"FAILED: {summary['failure_reason']}"
+    return "\n".join(
+        [
+            f"{summary['behaviour']}  seed {summary['seed']}  run {summary['run_id']}  {verdict}",
+            f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
+            f"{number('angular_velocity_mean')} rev/s "
+            f"(commanded {number('angular_velocity_commanded')})",
+            f"  speed        {number('speed_mean')} m/s (commanded {number('speed_commanded')})",
+            f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
+            f"drift {number('lateral_drift')} m",
+            f"  stall        {number('longest_stall')} s at most",
+            f"  torque       {number('torque_p99_fraction')} of the limit (99th percentile), "
+            f"{summary['solver_failures']} solver failures",
+            f"  real time    x {number('real_time_factor', '.1f')}",
+        ]
+    )
+
+
+def _described(log: "RunLog") -> str:
+    from rotctl.log import SCHEMA
+
+    attributes = log.attributes
+    lines = [f"{log.path}  run {attributes['run_id']}  schema {attributes['schema_version']}", ""]
+    for name in SCHEMA:
+        shape = " x ".join(map(str, log[name].shape)) or "scalar"
+        lines.append(f"{name:44} {shape:>16}  [{log.units(name)}]  {log.description(name)}")
+    lines += ["", "outcome"]
+    lines += [f"  {key:28} {value}" for key, value in log.outcome.items()]
+    lines += ["", "provenance"]
+    lines += [
+        f"  {key:28} {attributes[key]}"
+        for key in ("seed", "git_commit", "git_dirty", "versions", "machine", "wall_time")
+    ]
+    events = log.events
+    lines += ["", f"events     {len(events) or 'none'}"]
+    lines += [f"  {time:8.3f} s  {text}" for time, text in events[:20]]
+    if len(events) > 20:
+        lines.append(f"  ... and {len(events) - 20} more")
+    return "\n".join(lines)

@@ -1,0 +1,169 @@
+"""The whole-body controller: two passes of the optimisation with the supervisor between."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.control import condensed, literal
+from rotctl.control.answer import Answer
+from rotctl.control.pose import PoseTracker
+from rotctl.control.settings import ControllerSettings
+from rotctl.control.supervisor import RULES, Evidence
+from rotctl.control.targets import Desired, momentum_rates
+from rotctl.control.terms import Terms, collect
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.qp import Solution, Solver, make_solver
+from rotctl.rotations import Array
+
+SOLVED_BY_FALLBACK, POSE_ONLY = 1, 2  # status; 0 is solved by the chosen solver
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What the controller does at one instant.
+
+    Attributes:
+        torque: (nu,) within the limits [N m].
+        blend: gamma.
+        used: (m,) True for contacts of the second pass.
+        force: (m, 3) predicted contact forces, world axes [N]; zero where unused.
+        rates_wanted, rates_predicted: (6,) Ldot and Hdot [N, N m].
+        status: 0, SOLVED_BY_FALLBACK or POSE_ONLY.
+        fallback: which link of the chain gave the torque, 0 = the chosen solver.
+        iterations: of all passes.
+        residual: of the last pass.
+        reasons: why solvers before the last link failed.
+    """
+
+    torque: Array
+    blend: float
+    used: NDArray[np.bool_]
+    force: Array
+    rates_wanted: Array
+    rates_predicted: Array
+    status: int
+    fallback: int
+    iterations: int
+    residual: float
+    reasons: tuple[str, ...]
+
+
+class Controller:
+    """Decides torques; keeps workspaces, but no memory of the past."""
+
+    def __init__(self, model: Model, settings: ControllerSettings) -> None:
+        """Make the solvers and the pose tracker.
+
+        Raises:
+            InputError: the solver does not exist here, or cannot solve the chosen form.
+        """
+        solver = make_solver(settings.solver)
+        if settings.form == "literal" and solver.shape == "bounds":
+            raise InputError(
+                f"controller.form=literal has equality rows, which {solver.name} cannot "
+                "solve; choose controller.solver=osqp or controller.solver=qpsolvers:<name>"
+            )
+        self.model = model
+        self.settings = settings
+        self._tracker = PoseTracker(model, settings.gains, 1.0 / settings.rate)
+        self._chain: list[tuple[str, Solver]] = [(settings.form, solver)]
+        if (settings.form, solver.name) != ("condensed", "boxqp"):
+            self._chain.append(("condensed", make_solver("boxqp")))
+
+    def decide(self, state: State, desired: Desired, blend: float) -> Decision:
+        """Torques for one control period; `blend` is the previous step's gamma."""
+        rates = momentum_rates(desired, state.momentum, self.model.mass, self.settings.gains)
+        torques = self._tracker.torques(state, np.array((desired.pose_a, desired.pose_b)))
+        candidates = ~self.model.excluded[state.contacts.body]
+        terms = collect(self.model, state, self.settings, rates, torques, blend, candidates)
+        iterations = 0
+        reasons: list[str] = []
+        for form, solver in self._chain:
+            outcome = self._two_passes(form, solver, terms, state)
+            iterations += outcome.iterations
+            if not outcome.reason:
+                break
+            reasons.append(f"{form} {solver.name}: {outcome.reason}")
+        else:
+            outcome = _pose_only(terms)
+        used = np.zeros(len(candidates), dtype=bool)
+        used[candidates] = outcome.kept
+        force = np.zeros((len(used), 3))
+        answer = outcome.answer
+        force[used] = np.einsum("mij,mi->mj", state.contacts.frame[used], answer.force)
+        failures = len(reasons)
+        all_failed = failures == len(self._chain)
+        return Decision(
+            torque=np.clip(answer.torque, -terms.torque_limit, terms.torque_limit),
+            blend=min(max(answer.blend, 0.0), 1.0),
+            used=used,
+            force=force,
+            rates_wanted=rates,
+            rates_predicted=outcome.terms.maps @ answer.force.ravel() + terms.weight,
+            status=POSE_ONLY if all_failed else min(failures, SOLVED_BY_FALLBACK),
+            fallback=failures,
+            iterations=iterations,
+            residual=answer.solution.residual,
+            reasons=tuple(reasons),
+        )
+
+    def _two_passes(self, form: str, solver: Solver, terms: Terms, state: State) -> "_Outcome":
+        """The optimisation over all candidate contacts, then over those that pass the test."""
+        everything = np.ones(terms.contacts, dtype=bool)
+        first = self._pass(form, solver, terms, state)
+        outcome = _Outcome(first, terms, everything, first.solution.iterations)
+        rule = RULES.get(self.settings.supervisor)
+        if outcome.reason or rule is None:
+            return outcome
+        keep = rule(_evidence(first, terms, state), self.settings.thresholds)
+        if keep.all():
+            return outcome
+        subset = terms.subset(keep)
+        second = self._pass(form, solver, subset, state)
+        return _Outcome(second, subset, keep, outcome.iterations + second.solution.iterations)
+
+    def _pass(self, form: str, solver: Solver, terms: Terms, state: State) -> Answer:
+        if form == "literal":
+            return literal.solve(terms, self.model, state, solver)
+        return condensed.solve(terms, solver)
+
+
+@dataclass(frozen=True)
+class _Outcome:
+    """The last pass of one link: its answer over `terms`, and which candidates were kept."""
+
+    answer: Answer
+    terms: Terms
+    kept: NDArray[np.bool_]
+    iterations: int
+
+    @property
+    def reason(self) -> str:
+        """Why the answer cannot be used; empty if it can."""
+        if not self.answer.solution.solved:
+            return self.answer.solution.reason
+        return "" if np.isfinite(self.answer.torque.sum()) else "torques are not finite"
+
+
+def _evidence(first: Answer, terms: Terms, state: State) -> Evidence:
+    m = terms.contacts
+    per_contact = terms.maps[3:].reshape(3, m, 3)  # torque about the CM per force component
+    torque = np.einsum("amc,mc->ma", per_contact, first.force)
+    normal_rows = terms.jacobian[::3]
+    return Evidence(
+        force=np.sqrt((first.force**2).sum(axis=1)),
+        torque=np.sqrt((torque**2).sum(axis=1)),
+        separation=normal_rows @ state.velocity,
+    )
+
+
+def _pose_only(terms: Terms) -> _Outcome:
+    """Track the previous blend of the two poses, plan with no contact."""
+    nothing = np.zeros(terms.contacts, dtype=bool)
+    torque = terms.blend * terms.pose_a + (1.0 - terms.blend) * terms.pose_b
+    solution = Solution(np.empty(0), True, 0, float("nan"))
+    answer = Answer(torque, np.empty((0, 3)), terms.blend, solution)
+    return _Outcome(answer, terms.subset(nothing), nothing, 0)

@@ -1,0 +1,50 @@
+"""Torques that track a pose, [Brown2013] eq. 6, in the stable form of [Tan2011].
+
+Eq. 6 with the composite inertia M_jj as I and gains fit for rolling is unstable when its
+torque is held for 1/60 s: the largest eigenvalue of M^-1 diag(M) is about 100. The stable
+form asks for the same spring and damper at the *end* of the control period, with the
+acceleration predicted from the dynamics without contact. It stays linear in the pose, so
+the blend of eq. 7 keeps its meaning.
+"""
+
+import mujoco
+import numpy as np
+
+from rotctl.control.settings import Gains
+from rotctl.mechanics.model import ROOT_DOFS, Model
+from rotctl.mechanics.state import State
+from rotctl.rotations import Array
+
+
+class PoseTracker:
+    """Stable PD torques towards several poses at once."""
+
+    def __init__(self, model: Model, gains: Gains, period: float) -> None:
+        """Keep the gains [1/s^2, 1/s] and a scratch space for the factorisation.
+
+        Args:
+            period: the torque is held for this long [s].
+        """
+        self._model = model
+        self._gains = gains
+        self._period = period
+        self._scratch = mujoco.MjData(model.mj)
+
+    def torques(self, state: State, poses: Array) -> Array:
+        """Torques (k, nu) [N m] towards poses (k, nu) [rad]."""
+        h, mj, scratch = self._period, self._model.mj, self._scratch
+        inertia = state.mass_diagonal[ROOT_DOFS:] - self._model.armature
+        stiffness = self._gains.pose_stiffness * inertia
+        damping = self._gains.pose_damping * inertia
+        velocity = state.velocity[ROOT_DOFS:]
+        predicted = state.position[ROOT_DOFS + 1 :] + h * velocity
+        explicit = stiffness * (poses - predicted) - damping * velocity
+        # (M + h Kd) qddot = explicit - C: same sparsity as M, so MuJoCo's factor serves.
+        scratch.M[:] = state.data.M
+        scratch.M[self._model.diagonal[ROOT_DOFS:]] += h * damping
+        mujoco.mj_factorM(mj, scratch)
+        force = np.repeat(-state.bias[None], len(poses), axis=0)
+        force[:, ROOT_DOFS:] += explicit
+        acceleration = np.empty_like(force)
+        mujoco.mj_solveM(mj, scratch, acceleration, force)
+        return np.asarray(explicit - h * damping * acceleration[:, ROOT_DOFS:])

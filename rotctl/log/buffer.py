@@ -1,0 +1,138 @@
+"""Preallocated memory for one run: the loop writes rows, the writer takes the arrays.
+
+A schema path becomes an attribute by turning its slash into a dot, so that names of different
+groups cannot collide::
+
+    buffer.trajectory.qpos[i] = data.qpos
+    buffer.contacts.position[i, slot] = contact.pos
+    buffer.solver.status[i] = 0
+"""
+
+from dataclasses import dataclass, field, make_dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.errors import InputError
+from rotctl.log.schema import EVENT_BYTES, SCHEMA, DatasetSpec
+
+_ALLOCATED = {
+    name: spec for name, spec in SCHEMA.items() if spec.shape and "events" not in spec.shape
+}
+
+
+@dataclass(frozen=True)
+class TrajectoryBuffer:
+    """The rows of one run.
+
+    Attributes:
+        trajectory: arrays of the group ``trajectory``, one attribute each.
+        contacts: arrays of the group ``contacts``.
+        solver: arrays of the group ``solver``.
+        model: arrays of the group ``model``: one entry a joint, not one a step.
+        events: (time [s], text) in the order of their arrival.
+    """
+
+    trajectory: Any
+    contacts: Any
+    solver: Any
+    model: Any
+    events: list[tuple[float, str]] = field(default_factory=list)
+
+    @classmethod
+    def allocate(cls, steps: int, nq: int, nv: int, nu: int, capacity: int) -> "TrajectoryBuffer":
+        """Allocates every array whose size is known before the run.
+
+        Args:
+            steps: number of control steps.
+            nq: size of ``qpos``.
+            nv: size of ``qvel``.
+            nu: size of ``ctrl``.
+            capacity: recorded contacts a step.
+
+        Raises:
+            InputError: a size is negative.
+        """
+        sizes = {"steps": steps, "nq": nq, "nv": nv, "nu": nu, "capacity": capacity}
+        for name, size in sizes.items():
+            if size < 0:
+                raise InputError(f"{name} must be >= 0, got {size}")
+        return _from_arrays({name: _allocate(spec, sizes) for name, spec in _ALLOCATED.items()}, [])
+
+    @property
+    def steps(self) -> int:
+        """Number of rows."""
+        return len(self.trajectory.time)
+
+    def add_event(self, time: float, text: str) -> None:
+        """Notes that something happened.
+
+        Args:
+            time: simulated time [s].
+            text: what happened; longer text is cut at 200 bytes of UTF-8.
+        """
+        self.events.append((float(time), text))
+
+    def trimmed(self, steps: int) -> "TrajectoryBuffer":
+        """Returns the first ``steps`` rows (views, not copies) and all events.
+
+        Raises:
+            InputError: there are not that many rows.
+        """
+        if not 0 <= steps <= self.steps:
+            raise InputError(f"steps must be between 0 and {self.steps}, got {steps}")
+        rows = {
+            name: array[:steps] if "steps" in SCHEMA[name].shape else array
+            for name, array in self._allocated().items()
+        }
+        return _from_arrays(rows, list(self.events))
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Returns schema path -> array, events included; the model's text is not ours."""
+        times = np.array([time for time, _ in self.events], dtype=SCHEMA["events/time"].dtype)
+        texts = np.array(
+            [_event_bytes(text) for _, text in self.events], dtype=SCHEMA["events/text"].dtype
+        )
+        return {**self._allocated(), "events/time": times, "events/text": texts}
+
+    def _allocated(self) -> dict[str, NDArray[Any]]:
+        return {name: _array(self, name) for name in _ALLOCATED}
+
+
+def _array(buffer: TrajectoryBuffer, name: str) -> NDArray[Any]:
+    group, _, leaf = name.partition("/")
+    array: NDArray[Any] = getattr(getattr(buffer, group), leaf)
+    return array
+
+
+def _allocate(spec: DatasetSpec, sizes: dict[str, int]) -> NDArray[Any]:
+    shape = [dim if isinstance(dim, int) else sizes[dim] for dim in spec.shape]
+    return np.full(shape, spec.fill, dtype=spec.dtype)
+
+
+def _from_arrays(
+    arrays: dict[str, NDArray[Any]], events: list[tuple[float, str]]
+) -> TrajectoryBuffer:
+    return TrajectoryBuffer(
+        trajectory=_record("trajectory", arrays),
+        contacts=_record("contacts", arrays),
+        solver=_record("solver", arrays),
+        model=_record("model", arrays),
+        events=events,
+    )
+
+
+def _record(group: str, arrays: dict[str, NDArray[Any]]) -> Any:
+    """Frozen, so that ``buffer.trajectory.qpos = x`` (a forgotten index) is an error."""
+    members = {
+        name.partition("/")[2]: array
+        for name, array in arrays.items()
+        if name.startswith(f"{group}/")
+    }
+    return make_dataclass(group, members, frozen=True, slots=True)(**members)
+
+
+def _event_bytes(text: str) -> bytes:
+    whole = text.encode("utf-8", "replace")[:EVENT_BYTES].decode("utf-8", "ignore")
+    return whole.encode("utf-8")

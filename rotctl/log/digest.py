@@ -1,0 +1,35 @@
+"""One SHA-256 over everything that a log says, equal at the writer and at the reader."""
+
+import json
+from collections.abc import Mapping
+from hashlib import sha256
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.log.schema import ATTRIBUTES, SCHEMA
+
+_NOT_CONTENT = ("content_sha256", "complete")
+
+
+def content_sha256(
+    arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, bool | int | float | str]
+) -> str:
+    """Hashes all datasets in schema order (the model included), then all root attributes.
+
+    Args:
+        arrays: schema path -> array, complete.
+        attributes: root attribute -> value; ``content_sha256`` and ``complete`` are left out.
+
+    Returns:
+        64 hexadecimal digits.
+    """
+    digest = sha256()
+    for name in SCHEMA:
+        array = np.asarray(arrays[name])
+        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
+        digest.update(array.tobytes())
+    content = {name: attributes[name] for name in ATTRIBUTES if name not in _NOT_CONTENT}
+    digest.update(json.dumps(content).encode())
+    return digest.hexdigest()

@@ -1,0 +1,142 @@
+"""A log file -> its arrays, checked before anything is read."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.errors import LogError
+from rotctl.log import untrusted
+from rotctl.log.digest import content_sha256
+from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout
+
+
+@dataclass(frozen=True)
+class RunLog:
+    """One checked log. The file is opened for each read, never held.
+
+    Attributes:
+        path: the file.
+        attributes: root attributes, as plain Python values.
+        sizes: ``steps``, ``nq``, ``nv``, ``nu``, ``capacity``, ``events`` -> size.
+    """
+
+    path: Path
+    attributes: Mapping[str, bool | int | float | str]
+    sizes: Mapping[str, int]
+
+    @classmethod
+    def open(cls, path: str | Path) -> "RunLog":
+        """Opens a log and checks all of it except the data themselves (see ``verify``).
+
+        Raises:
+            LogError: ``<path>: <reason>``; missing, truncated, foreign, of another version,
+                incomplete, unsafe or misshapen.
+        """
+        path = Path(path)
+        with untrusted.opened(path) as file:
+            attributes = untrusted.root_attributes(file)
+            datasets = untrusted.datasets(file)
+            sizes = check_layout({name: (d.dtype, d.shape) for name, d in datasets.items()})
+            for name, dataset in datasets.items():
+                _check_unit(name, dataset)
+        return cls(path, attributes, sizes)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Reads one dataset, for example ``log["trajectory/qpos"]``.
+
+        Raises:
+            LogError: there is no such dataset, or it is damaged.
+        """
+        self._require_name(name)
+        with untrusted.opened(self.path) as file:
+            dataset = untrusted.dataset(file, *name.split("/"))
+            check_dataset(name, dataset.dtype, dataset.shape, self.sizes)
+            array: NDArray[Any] = np.asarray(dataset[()])
+        return array
+
+    @property
+    def steps(self) -> int:
+        """Number of control steps."""
+        return self.sizes["steps"]
+
+    @property
+    def config_yaml(self) -> str:
+        """The full configuration of the run, as YAML."""
+        return str(self.attributes["config"])
+
+    @property
+    def outcome(self) -> dict[str, Any]:
+        """The run's summary row.
+
+        Raises:
+            LogError: it is not a JSON object.
+        """
+        try:
+            outcome = json.loads(str(self.attributes["outcome"]))
+        except (ValueError, RecursionError) as error:
+            raise LogError(f"{self.path}: outcome is not JSON") from error
+        if not isinstance(outcome, dict):
+            raise LogError(f"{self.path}: outcome is not a JSON object")
+        return outcome
+
+    @property
+    def model_xml(self) -> str:
+        """The simulated model, as MJCF.
+
+        Raises:
+            LogError: it is damaged.
+        """
+        return self._text(self[MODEL_PATH].item())
+
+    @property
+    def events(self) -> list[tuple[float, str]]:
+        """(time [s], text) of every event.
+
+        Raises:
+            LogError: they are damaged.
+        """
+        times, texts = self["events/time"].tolist(), self["events/text"].tolist()
+        return [(time, self._text(text)) for time, text in zip(times, texts, strict=True)]
+
+    def units(self, name: str) -> str:
+        """Returns the unit of a dataset; ``open`` has checked that the file agrees."""
+        self._require_name(name)
+        return SCHEMA[name].unit
+
+    def description(self, name: str) -> str:
+        """Returns what a dataset holds."""
+        self._require_name(name)
+        return SCHEMA[name].description
+
+    def verify(self) -> None:
+        """Reads everything and compares it with the hash that the writer left.
+
+        Raises:
+            LogError: the file is damaged.
+        """
+        found = content_sha256({name: self[name] for name in SCHEMA}, self.attributes)
+        if found != self.attributes["content_sha256"]:
+            raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
+
+    def _require_name(self, name: str) -> None:
+        if name not in SCHEMA:
+            raise LogError(f"{self.path}: no dataset {name!r}; valid names: {', '.join(SCHEMA)}")
+
+    def _text(self, encoded: bytes) -> str:
+        try:
+            return encoded.decode("utf-8")
+        except UnicodeDecodeError as error:
+            raise LogError(f"{self.path}: damaged, text is not UTF-8") from error
+
+
+def _check_unit(name: str, dataset: h5py.Dataset) -> None:
+    """Refuses a dataset that would be misread, say millimetres for metres."""
+    unit = untrusted.attribute(dataset, "units") if "units" in dataset.attrs else None
+    if unit != SCHEMA[name].unit:
+        raise LogError(f"{name} has unit {unit!r:.40}, expected {SCHEMA[name].unit!r}")

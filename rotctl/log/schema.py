@@ -1,0 +1,196 @@
+"""What a run's log contains: every dataset and root attribute, and the check that both ends share.
+
+State at row ``i`` is the state that the controller saw at ``time[i]``; ``ctrl`` row ``i`` is the
+torque held from ``time[i]`` on. Everything is SI, in world axes, about the centre of mass.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from rotctl.errors import LogError
+
+SCHEMA_VERSION = 1
+
+MODEL_PATH = "model/mjcf"
+EVENT_BYTES = 200
+MAX_MODEL_BYTES = 16 * 2**20
+MAX_TOTAL_BYTES = 2 * 2**30
+
+
+@dataclass(frozen=True)
+class DatasetSpec:
+    """One dataset of the log.
+
+    Attributes:
+        dtype: NumPy type string; plain ``"S"`` stands for bytes of any one fixed length.
+        shape: dimensions, each a number or one of ``steps``, ``nq``, ``nv``, ``nu``,
+            ``capacity``, ``events``.
+        unit: SI unit; ``"1"`` where there is none.
+        description: one line for the reader of the file.
+        fill: value of the rows and slots that nobody has written.
+    """
+
+    dtype: str
+    shape: tuple[str | int, ...]
+    unit: str
+    description: str
+    fill: int = 0
+
+
+def _per_step(unit: str, description: str, *row: str | int) -> DatasetSpec:
+    return DatasetSpec("<f8", ("steps", *row), unit, description)
+
+
+def _per_contact(unit: str, description: str) -> DatasetSpec:
+    return DatasetSpec("<f4", ("steps", "capacity", 3), unit, description)
+
+
+_SLOTS = ("steps", "capacity")
+
+SCHEMA: dict[str, DatasetSpec] = {
+    "trajectory/time": _per_step("s", "simulated time at which the controller saw this row"),
+    "trajectory/qpos": _per_step("m, rad, quaternion", "generalised positions, MuJoCo order", "nq"),
+    "trajectory/qvel": _per_step("m/s, rad/s", "generalised velocities, MuJoCo order", "nv"),
+    "trajectory/ctrl": _per_step("N m", "joint torques held from this row's time on", "nu"),
+    "trajectory/com": _per_step("m", "centre of mass", 3),
+    "trajectory/com_velocity": _per_step("m/s", "velocity of the centre of mass", 3),
+    "trajectory/linear_momentum": _per_step("kg m/s", "linear momentum L", 3),
+    "trajectory/angular_momentum": _per_step(
+        "kg m2/s", "angular momentum H about the centre of mass", 3
+    ),
+    "trajectory/angular_velocity": _per_step(
+        "rad/s", "whole-body angular velocity, I_c^-1 H with I_c the composite inertia", 3
+    ),
+    "trajectory/angular_excursion": _per_step(
+        "rad", "angular excursion: integral of the whole-body angular velocity", 3
+    ),
+    "trajectory/linear_momentum_rate_desired": _per_step("N", "rate of L that was asked for", 3),
+    "trajectory/linear_momentum_rate_predicted": _per_step(
+        "N", "rate of L that the controller's solution predicts", 3
+    ),
+    "trajectory/angular_momentum_rate_desired": _per_step("N m", "rate of H that was asked for", 3),
+    "trajectory/angular_momentum_rate_predicted": _per_step(
+        "N m", "rate of H that the controller's solution predicts", 3
+    ),
+    "trajectory/blend": _per_step("1", "weight between the torques of the two pose objectives"),
+    "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
+    "trajectory/lateral_axis": _per_step("1", "mean lateral axis of the trunk, unit vector", 3),
+    "contacts/count": DatasetSpec(
+        "<i4", ("steps",), "1", "all contacts with the ground; may exceed the recorded capacity"
+    ),
+    "contacts/body": DatasetSpec("<i4", _SLOTS, "1", "MuJoCo body id, -1 where empty", fill=-1),
+    "contacts/position": _per_contact("m", "contact point"),
+    "contacts/normal": _per_contact("1", "contact normal, out of the ground, unit vector"),
+    "contacts/force_predicted": _per_contact("N", "contact force in the controller's solution"),
+    "contacts/force_realised": _per_contact("N", "contact force in the simulation"),
+    "contacts/used": DatasetSpec("?", _SLOTS, "1", "contact kept by the supervisor"),
+    "solver/status": DatasetSpec(
+        "i1",
+        ("steps",),
+        "1",
+        "0 solved, 1 solved by a fallback, 2 all solvers failed and the pose torque was used",
+    ),
+    "solver/iterations": DatasetSpec("<i4", ("steps",), "1", "iterations of the solver"),
+    "solver/residual": _per_step("1", "largest residual of the solution, in the solver's scaling"),
+    "solver/fallback": DatasetSpec(
+        "i1", ("steps",), "1", "link of the chain that gave the torque, 0 = the chosen solver"
+    ),
+    "events/time": DatasetSpec("<f8", ("events",), "s", "simulated time of the event"),
+    "events/text": DatasetSpec(f"S{EVENT_BYTES}", ("events",), "text", "what happened, UTF-8"),
+    "model/joint": DatasetSpec("S64", ("nu",), "text", "name of each actuated joint, UTF-8"),
+    "model/torque_limit": DatasetSpec("<f8", ("nu",), "N m", "largest torque of each joint"),
+    MODEL_PATH: DatasetSpec("S", (), "text", "self-contained MJCF of the simulated model, UTF-8"),
+}
+
+GROUPS = tuple(dict.fromkeys(name.partition("/")[0] for name in SCHEMA))
+
+ATTRIBUTES: dict[str, type] = {
+    "schema_version": int,
+    "config": str,  # YAML
+    "run_id": str,
+    "seed": int,
+    "versions": str,  # JSON
+    "git_commit": str,
+    "git_dirty": bool,
+    "machine": str,  # JSON
+    "wall_time": float,  # [s]
+    "outcome": str,  # JSON, the summary row
+    "content_sha256": str,
+    "complete": bool,
+}
+WRITER_ATTRIBUTES = ("schema_version", "content_sha256", "complete")
+
+
+def check_dataset(
+    name: str, dtype: "np.dtype[Any]", shape: tuple[int, ...] | None, sizes: Mapping[str, int]
+) -> dict[str, int]:
+    """Checks one dataset against its spec and the sizes that are known so far.
+
+    Args:
+        name: path in ``SCHEMA``.
+        dtype: its type.
+        shape: its shape; None for HDF5's null dataspace.
+        sizes: symbolic dimension -> size, as bound by other datasets.
+
+    Returns:
+        ``sizes`` and what this dataset adds to them.
+
+    Raises:
+        LogError: wrong type, rank or size.
+    """
+    spec = SCHEMA[name]
+    expected = np.dtype(spec.dtype)
+    any_length = expected.itemsize == 0 and dtype.kind == expected.kind
+    if dtype != expected and not any_length:
+        raise LogError(f"{name} has type {dtype}, expected {expected.name}")
+    if shape is None or len(shape) != len(spec.shape):
+        raise LogError(f"{name} has shape {shape}, expected {_shape_text(spec)}")
+    bound = dict(sizes)
+    for dim, size in zip(spec.shape, shape, strict=True):
+        wanted = dim if isinstance(dim, int) else bound.setdefault(dim, size)
+        if size != wanted:
+            raise LogError(
+                f"{name} has shape {shape}, expected {_shape_text(spec)}"
+                + ("" if isinstance(dim, int) else f" with {dim} = {wanted}")
+            )
+    return bound
+
+
+def check_layout(
+    layout: Mapping[str, tuple["np.dtype[Any]", tuple[int, ...] | None]],
+) -> dict[str, int]:
+    """Checks the datasets of a whole log, from types and shapes alone.
+
+    Args:
+        layout: name -> (type, shape).
+
+    Returns:
+        Symbolic dimension -> size.
+
+    Raises:
+        LogError: a dataset is missing, unknown, misshapen, or the log is absurdly large.
+    """
+    for name in layout:
+        if name not in SCHEMA:
+            raise LogError(f"unknown dataset {name!r}")
+    sizes: dict[str, int] = {}
+    total = 0
+    for name in SCHEMA:
+        if name not in layout:
+            raise LogError(f"missing dataset {name!r}")
+        dtype, shape = layout[name]
+        sizes = check_dataset(name, dtype, shape, sizes)
+        total += dtype.itemsize * prod(shape or ())
+    if layout[MODEL_PATH][0].itemsize > MAX_MODEL_BYTES:
+        raise LogError(f"{MODEL_PATH} is larger than {MAX_MODEL_BYTES} bytes")
+    if total > MAX_TOTAL_BYTES:
+        raise LogError(f"declares more than {MAX_TOTAL_BYTES} bytes of data")
+    return sizes
+
+
+def _shape_text(spec: DatasetSpec) -> str:
+    return "(" + ", ".join(map(str, spec.shape)) + ")"

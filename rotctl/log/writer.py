@@ -1,0 +1,189 @@
+"""A finished run -> one HDF5 file that is either whole or not there.
+
+The file is made in memory and reaches the disk as plain bytes: a kill before the rename leaves
+at most a ``.part``, and a full disk is an ordinary ``OSError``, not an HDF5 one.
+"""
+
+import io
+import json
+import os
+from collections.abc import Mapping
+from contextlib import suppress
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.errors import InputError
+from rotctl.log.buffer import TrajectoryBuffer
+from rotctl.log.digest import content_sha256
+from rotctl.log.schema import (
+    ATTRIBUTES,
+    MODEL_PATH,
+    SCHEMA,
+    SCHEMA_VERSION,
+    WRITER_ATTRIBUTES,
+    check_layout,
+)
+
+_CHUNK_BYTES = 2**20
+_GZIP_LEVEL = 4
+
+
+def write_run(
+    path: str | Path,
+    run: TrajectoryBuffer | Mapping[str, NDArray[Any]],
+    *,
+    model_xml: str,
+    attributes: Mapping[str, Any],
+) -> None:
+    """Writes one run to ``path``, atomically and durably.
+
+    Args:
+        path: the final file; its folder must exist. An older file there is replaced.
+        run: the buffer, or schema path -> array without the model.
+        model_xml: self-contained MJCF.
+        attributes: ``config``, ``run_id``, ``seed``, ``versions``, ``git_commit``, ``git_dirty``,
+            ``machine``, ``wall_time`` [s], ``outcome``. Mappings are stored as JSON.
+
+    Raises:
+        InputError: ``cannot write <path>: <reason>``; nothing is left behind.
+    """
+    try:
+        _replace(Path(path), encode_run(run, model_xml=model_xml, attributes=attributes))
+    except InputError as error:
+        raise InputError(f"cannot write {path}: {error}") from error
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def encode_run(
+    run: TrajectoryBuffer | Mapping[str, NDArray[Any]],
+    *,
+    model_xml: str,
+    attributes: Mapping[str, Any],
+) -> bytes:
+    """Returns the HDF5 file of a run; equal input gives equal bytes.
+
+    Args:
+        run: as for ``write_run``.
+        model_xml: as for ``write_run``.
+        attributes: as for ``write_run``.
+
+    Raises:
+        InputError: an array, an attribute or the model does not fit the schema.
+    """
+    arrays = dict(run.arrays() if isinstance(run, TrajectoryBuffer) else run)
+    arrays[MODEL_PATH] = np.array(_utf8("model_xml", model_xml))
+    check_layout({name: (array.dtype, array.shape) for name, array in arrays.items()})
+    root = _root_attributes(attributes)
+    root["content_sha256"] = content_sha256(arrays, root)
+
+    memory = io.BytesIO()
+    with h5py.File(memory, "w") as file:
+        for name in SCHEMA:
+            _write_dataset(file, name, arrays[name])
+        for name, value in root.items():
+            file.attrs[name] = value
+        file.attrs["complete"] = True
+    return memory.getvalue()
+
+
+def _write_dataset(file: h5py.File, name: str, array: NDArray[Any]) -> None:
+    spec = SCHEMA[name]
+    if array.dtype.kind == "S":
+        array = array.astype(h5py.string_dtype("utf-8", array.dtype.itemsize))
+    dataset = file.create_dataset(name, data=array, track_times=False, **_storage(array))
+    dataset.attrs["units"] = spec.unit
+    dataset.attrs["description"] = spec.description
+
+
+def _storage(array: NDArray[Any]) -> dict[str, Any]:
+    """Whole rows in chunks of about 1 MiB; HDF5 cannot chunk scalar or empty datasets."""
+    if array.ndim == 0 or array.size == 0:
+        return {}
+    row_bytes = array.dtype.itemsize * prod(array.shape[1:])
+    rows = min(len(array), max(1, _CHUNK_BYTES // row_bytes))
+    return {
+        "chunks": (rows, *array.shape[1:]),
+        "compression": "gzip",
+        "compression_opts": _GZIP_LEVEL,
+        "shuffle": True,
+        "fletcher32": True,
+    }
+
+
+def _root_attributes(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the caller's attributes as plain values, in schema order, with the version."""
+    wanted = [name for name in ATTRIBUTES if name not in WRITER_ATTRIBUTES]
+    for name in given:
+        if name not in wanted:
+            raise InputError(f"unknown attribute {name!r}; valid names: {', '.join(wanted)}")
+    plain: dict[str, Any] = {"schema_version": SCHEMA_VERSION}
+    for name in wanted:
+        if name not in given:
+            raise InputError(f"missing attribute {name!r}")
+        plain[name] = _plain(name, given[name])
+    return plain
+
+
+def _plain(name: str, value: Any) -> bool | int | float | str:
+    plain: Any = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, Mapping):
+        plain = json.dumps(dict(plain), default=_json_scalar)
+    kind, given = ATTRIBUTES[name], type(plain)
+    if given is not kind and (given, kind) != (int, float):
+        raise InputError(f"attribute {name!r} must be {kind.__name__}, got {given.__name__}")
+    if kind is str:
+        _utf8(f"attribute {name!r}", plain)
+    if kind is int and not -(2**63) <= plain < 2**63:
+        raise InputError(f"attribute {name!r} must fit in 64 bits, got {plain}")
+    checked: bool | int | float | str = kind(plain)
+    return checked
+
+
+def _json_scalar(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        return value.item()
+    raise InputError(f"cannot store a {type(value).__name__} as JSON")
+
+
+def _utf8(name: str, text: str) -> bytes:
+    """Returns the bytes of a text that HDF5 can give back unchanged."""
+    try:
+        encoded = text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise InputError(f"{name} is not valid Unicode text") from error
+    if b"\0" in encoded:
+        raise InputError(f"{name} contains a NUL character")
+    return encoded
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Puts ``content`` at ``path`` through a synced ``.part`` beside it."""
+    part = Path(f"{path}.part")
+    try:
+        with part.open("wb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(part, path)
+    except BaseException:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise
+    _sync_folder(path.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Makes the rename itself durable, where a folder can be synced."""
+    if os.name != "posix":
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

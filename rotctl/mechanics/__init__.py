@@ -1,0 +1,1 @@
+"""Character, ground, contacts, momentum and excursion; knows MuJoCo, no QP."""

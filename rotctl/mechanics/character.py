@@ -1,0 +1,182 @@
+"""A character from numbers: bodies, joints and capsules of `conf/character/*.yaml` to MjSpec."""
+
+from typing import Annotated
+
+import mujoco
+import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.errors import InputError
+from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Range, Vector
+
+CHARACTER_CONTACT = 1  # contype of the character's geoms
+GROUND_CONTACT = 2  # contype of the ground's geoms
+Colour = tuple[Fraction, Fraction, Fraction]
+
+
+@validated(frozen=True, config=STRICT)
+class Joint:
+    """One hinge: axis in the body's frame, range [rad], torque limit [N m]."""
+
+    name: str
+    axis: Vector
+    range: Range
+    torque: Positive
+
+
+@validated(frozen=True, config=STRICT)
+class Geom:
+    """A capsule from `start` to `end` [m], or a sphere where `end` is absent; radius `size` [m].
+
+    `mass` is a fraction of the character's mass. A geom of mass 0 is only seen: it
+    neither weighs nor touches anything.
+    """
+
+    name: str
+    size: Positive
+    start: Vector
+    mass: Fraction
+    end: Vector | None = None
+    colour: Colour | None = None
+
+
+@validated(frozen=True, config=STRICT)
+class Body:
+    """A rigid segment; `mirror` makes a left one as written and a right one reflected."""
+
+    name: str
+    geoms: tuple[Geom, ...]
+    parent: str | None = None
+    position: Vector = (0.0, 0.0, 0.0)
+    joints: tuple[Joint, ...] = ()
+    mirror: bool = False
+    colour: Colour = (0.8, 0.6, 0.5)
+
+
+@validated(frozen=True, config=STRICT)
+class Character:
+    """All numbers of one character; see `conf/character/adult.yaml` for units and sources."""
+
+    name: str
+    height: Positive
+    mass: Positive
+    root_height: Positive
+    joint_damping: NonNegative
+    joint_armature: NonNegative
+    limit_solref: tuple[Positive, Positive]
+    friction: Positive
+    trunk: tuple[str, ...]
+    exclude_from_control: tuple[str, ...]
+    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
+    self_collision: tuple[tuple[str, str], ...] = ()
+    description: str = ""
+
+
+def add_character(spec: mujoco.MjSpec, character: Character) -> None:
+    """Add the character's tree, motors and self-collision pairs to `spec`.
+
+    Motors are in the order of the degrees of freedom, so that dof 6 + i belongs to motor i.
+
+    Raises:
+        InputError: a body names an unknown parent, or a collision pair an unknown body.
+    """
+    built: dict[str, mujoco.MjsBody] = {}
+    geoms: dict[str, list[tuple[str, str]]] = {}
+    torque: dict[str, float] = {}
+    for body in character.bodies:
+        for side in ("_l", "_r") if body.mirror else ("",):
+            made = _add_body(spec, character, body, side, built)
+            for joint in body.joints:
+                _add_joint(made, character, joint, side)
+                torque[joint.name + side] = joint.torque
+            for geom in body.geoms:
+                _add_geom(made, character, body, geom, side)
+                if geom.mass > 0:
+                    geoms.setdefault(body.name, []).append((side, geom.name + side))
+    for name in _joints_in_dof_order(spec):
+        motor = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        motor.set_to_motor()
+        motor.ctrlrange = [-torque[name], torque[name]]
+        motor.ctrllimited = True
+    for first, second in character.self_collision:
+        for name in (first, second):
+            if name not in geoms:
+                raise InputError(
+                    f"character.self_collision names the unknown body {name!r}; "
+                    f"bodies: {', '.join(geoms)}"
+                )
+        for side_a, geom_a in geoms[first]:
+            for side_b, geom_b in geoms[second]:
+                if first != second or (side_a, side_b) == ("_l", "_r"):
+                    spec.add_pair(geomname1=geom_a, geomname2=geom_b, condim=1)
+
+
+def _add_body(
+    spec: mujoco.MjSpec,
+    character: Character,
+    body: Body,
+    side: str,
+    built: dict[str, mujoco.MjsBody],
+) -> mujoco.MjsBody:
+    if body.parent is None:
+        made = spec.worldbody.add_body(name=body.name, pos=[0.0, 0.0, character.root_height])
+        made.add_freejoint(name="root")
+    else:
+        parent = built.get(body.parent + side) or built.get(body.parent)
+        if parent is None:
+            raise InputError(
+                f"character body {body.name!r} hangs on the unknown parent {body.parent!r}; "
+                f"bodies before it: {', '.join(built)}"
+            )
+        made = parent.add_body(name=body.name + side, pos=_mirrored(body.position, side))
+    built[body.name + side] = made
+    return made
+
+
+def _add_joint(made: mujoco.MjsBody, character: Character, joint: Joint, side: str) -> None:
+    # An axis is a pseudo-vector: its in-plane part changes sign in a mirror.
+    x, y, z = joint.axis
+    made.add_joint(
+        name=joint.name + side,
+        type=mujoco.mjtJoint.mjJNT_HINGE,
+        axis=[-x, y, -z] if side == "_r" else [x, y, z],
+        range=joint.range,
+        limited=True,
+        damping=character.joint_damping,
+        armature=character.joint_armature,
+        solref_limit=character.limit_solref,
+    )
+
+
+def _add_geom(
+    made: mujoco.MjsBody, character: Character, body: Body, geom: Geom, side: str
+) -> None:
+    solid = geom.mass > 0
+    made.add_geom(
+        name=geom.name + side,
+        type=mujoco.mjtGeom.mjGEOM_SPHERE if geom.end is None else mujoco.mjtGeom.mjGEOM_CAPSULE,
+        size=[geom.size, 0.0, 0.0],
+        mass=geom.mass * character.mass,
+        contype=CHARACTER_CONTACT if solid else 0,
+        conaffinity=GROUND_CONTACT if solid else 0,
+        condim=3,
+        friction=[character.friction, 0.0, 0.0],
+        rgba=[*(geom.colour or body.colour), 1.0],
+        **(
+            {"pos": _mirrored(geom.start, side)}
+            if geom.end is None
+            else {"fromto": np.r_[_mirrored(geom.start, side), _mirrored(geom.end, side)]}
+        ),
+    )
+
+
+def _mirrored(position: Vector, side: str) -> list[float]:
+    x, y, z = position
+    return [x, -y if side == "_r" else y, z]
+
+
+def _joints_in_dof_order(spec: mujoco.MjSpec) -> list[str]:
+    model = spec.compile()
+    hinges = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
+    return [model.joint(int(j)).name for j in hinges]

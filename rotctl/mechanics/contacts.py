@@ -1,0 +1,98 @@
+"""Ground contacts: frames, points and Jacobian rows, straight from MuJoCo's constraint rows."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.rotations import Array
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The m contacts between character and ground at one instant.
+
+    Attributes:
+        body: (m,) MuJoCo id of the character's body.
+        position: (m, 3) world point [m].
+        frame: (m, 3, 3) rows are normal (out of the ground) and two tangents, world axes.
+        jacobian: (3m, nv) rows N, T1, T2 of each contact: velocity of the body's point
+            along the frame's rows, per unit generalised velocity.
+        row: (m,) first row of each contact in MuJoCo's constraint arrays.
+        friction: (m, 2) the physics' friction coefficients along the two tangents [-].
+    """
+
+    body: NDArray[np.int32]
+    position: Array
+    frame: Array
+    jacobian: Array
+    row: NDArray[np.int64]
+    friction: Array
+
+    @property
+    def count(self) -> int:
+        """Number of contacts m."""
+        return len(self.body)
+
+
+def read_contacts(mj: mujoco.MjModel, data: mujoco.MjData) -> Contacts:
+    """Contacts of the current position; call after `mj_step1` or `mj_forward`.
+
+    With an elliptic cone the rows of `efc_J` are exactly (N, T1, T2); with a pyramidal
+    cone each pair of opposite edges is N +- mu T, from which N and T follow exactly.
+    Contacts of the character with itself are left out: control does not plan with them.
+    """
+    nv = mj.nv
+    contact = data.contact
+    bodies = mj.geom_bodyid[contact.geom]  # (ncon, 2)
+    chosen = np.flatnonzero((bodies == 0).any(axis=1) & (contact.efc_address >= 0))
+    body = bodies[chosen].max(axis=1)
+    row = contact.efc_address[chosen].astype(np.int64)
+    friction = contact.friction[chosen, :2]
+    rows = data.efc_J.reshape(-1, nv)
+    if mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC:
+        jacobian = rows[(row[:, None] + _THREE).ravel()]
+    else:
+        jacobian = _from_pyramid(rows, row, friction)
+    # Where the character is the contact's first geom, MuJoCo's frame points into the
+    # ground while its rows still measure separation: only the frame needs turning.
+    sign = np.where(bodies[chosen, 0] > 0, -1.0, 1.0)
+    return Contacts(
+        body=body,
+        position=contact.pos[chosen],
+        frame=contact.frame[chosen].reshape(-1, 3, 3) * sign[:, None, None],
+        jacobian=jacobian,
+        row=row,
+        friction=friction,
+    )
+
+
+def realised_forces(mj: mujoco.MjModel, data: mujoco.MjData, contacts: Contacts) -> Array:
+    """World forces (m, 3) [N] on the character that the last solve gave these contacts."""
+    force = data.efc_force
+    if mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC:
+        local = force[contacts.row[:, None] + _THREE]
+    else:
+        edges = force[contacts.row[:, None] + np.arange(4)]  # (m, 4)
+        first, second = contacts.friction.T
+        local = np.stack(
+            [
+                edges.sum(axis=1),
+                first * (edges[:, 0] - edges[:, 1]),
+                second * (edges[:, 2] - edges[:, 3]),
+            ],
+            axis=1,
+        )
+    return np.asarray(np.einsum("mij,mi->mj", contacts.frame, local))
+
+
+def _from_pyramid(rows: Array, row: NDArray[np.int64], friction: Array) -> Array:
+    edges = rows[row[:, None] + np.arange(4)]  # (m, 4, nv)
+    normal = 0.5 * (edges[:, 0] + edges[:, 1])
+    first = (edges[:, 0] - edges[:, 1]) / (2.0 * friction[:, 0:1])
+    second = (edges[:, 2] - edges[:, 3]) / (2.0 * friction[:, 1:2])
+    return np.stack([normal, first, second], axis=1).reshape(-1, rows.shape[1])
+
+
+_THREE = np.arange(3)

@@ -1,0 +1,77 @@
+"""Angular excursion AE: how far the whole body has turned, [Brown2013] eq. 1, two ways.
+
+`integral` is eq. 1 as printed: phi = int omega dt + phi_0, component by component. A vector
+integral cannot see *coning*: a body tilted away from its spin axis that keeps spinning
+about world y has omega_x = omega_z = 0, so phi_x and phi_z stay constant while the body
+rolls off its axis.
+
+`oriented` repairs this. It integrates omega as an orientation, and compares where that
+orientation has carried the rolling axis with where the axis should be. As omega is not
+the velocity of any one body, the integral drifts from the body slowly; it is pulled to
+the trunk's mean lateral axis with a time constant. In-plane, both are the plain integral.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from rotctl.rotations import Array, advance, cross, rotate, rotation_between
+
+ExcursionName = Literal["oriented", "integral"]
+
+
+@dataclass(frozen=True)
+class Excursion:
+    """AE at one instant.
+
+    Attributes:
+        angle: (3,) phi, the component-wise integral of omega [rad].
+        orientation: (4,) the integral of omega as an orientation, unit quaternion.
+    """
+
+    angle: Array
+    orientation: Array
+
+
+def start(angle: Array) -> Excursion:
+    """Excursion at the start of a run, phi_0 = `angle` (3,) [rad]."""
+    return Excursion(angle=np.asarray(angle, dtype=float), orientation=np.array([1.0, 0, 0, 0]))
+
+
+def integrate(
+    excursion: Excursion,
+    angular_velocity: Array,
+    lateral_axis: Array,
+    rolling_axis: Array,
+    period: float,
+    correction_time: float,
+) -> Excursion:
+    """Advance AE by one control period.
+
+    Args:
+        angular_velocity: (3,) AV [rad/s].
+        lateral_axis: (3,) the trunk's mean lateral axis now, unit.
+        rolling_axis: (3,) the axis the body should roll about, unit.
+        period: [s].
+        correction_time: time constant of the pull towards the trunk [s].
+    """
+    turn = angular_velocity * period
+    orientation = advance(excursion.orientation, turn)
+    drift = cross(rotate(orientation, rolling_axis), lateral_axis)
+    pulled = advance(orientation, drift * min(1.0, period / correction_time))
+    return replace(excursion, angle=excursion.angle + turn, orientation=pulled)
+
+
+def error(excursion: Excursion, target: Array, rolling_axis: Array, name: ExcursionName) -> Array:
+    """D(phi_hat, phi) of [Brown2013] eq. 4: what is missing to the target, (3,) [rad].
+
+    With `oriented` the part across the rolling axis is the rotation that brings the
+    carried rolling axis back to the wanted one; the part along it is the plain difference.
+    """
+    difference = target - excursion.angle
+    if name == "integral":
+        return difference
+    carried = rotate(excursion.orientation, rolling_axis)
+    along = rolling_axis * (rolling_axis @ difference)
+    return np.asarray(rotation_between(carried, rolling_axis) + along)

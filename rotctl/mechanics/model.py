@@ -1,0 +1,191 @@
+"""Character, ground and physics options compiled into one model, with the indices control needs."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.errors import InputError
+from rotctl.mechanics.character import Character, add_character
+from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
+from rotctl.mechanics.terrain import Terrain, add_terrain
+from rotctl.rotations import Array
+
+ROOT_DOFS = 6
+Count = Annotated[int, Field(ge=0, le=10_000)]
+
+
+@validated(frozen=True, config=STRICT)
+class Physics:
+    """Every option of the physics; see `conf/physics/mujoco.yaml` for units and reasons."""
+
+    name: str
+    stepper: Literal["mujoco"]
+    substeps: Annotated[int, Field(ge=1, le=1000)]
+    gravity: Vector
+    integrator: Literal["euler", "implicit", "implicitfast"]
+    cone: Literal["elliptic", "pyramidal"]
+    solver: Literal["newton", "cg", "pgs"]
+    jacobian: Literal["dense"]
+    iterations: Annotated[int, Field(ge=1, le=10_000)]
+    tolerance: NonNegative
+    ls_iterations: Annotated[int, Field(ge=1, le=10_000)]
+    ls_tolerance: NonNegative
+    noslip_iterations: Count
+    noslip_tolerance: NonNegative
+    ccd_iterations: Count
+    ccd_tolerance: NonNegative
+    impratio: Positive
+    density: NonNegative
+    viscosity: NonNegative
+    disable: tuple[Literal["autoreset", "warmstart", "eulerdamp", "filterparent"], ...]
+    contact_solref: tuple[Positive, Positive]
+    contact_solimp: tuple[Fraction, Fraction, Positive, Fraction, Positive]
+    contact_capacity: Annotated[int, Field(ge=1, le=1024)]
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A compiled model and the numbers around it that do not change during a run.
+
+    Attributes:
+        mj: the MuJoCo model.
+        mjcf: the same model as self-contained text.
+        joint_names: actuated joints in motor order; motor i drives dof 6 + i.
+        joint_range: (nu, 2) [rad].
+        torque_limit: (nu,) [N m].
+        armature: (nu,) [kg m2].
+        diagonal: (nv,) addresses of the mass matrix's diagonal in `data.M`.
+        mass: of the character [kg].
+        gravity: (3,) [m/s2].
+        trunk: body ids whose lateral axes define the rolling axis.
+        trunk_weights: (len(trunk), 1) their shares of the trunk's mass.
+        excluded: (nbody,) True where a body's contacts are held out of control.
+    """
+
+    mj: mujoco.MjModel
+    mjcf: str
+    joint_names: tuple[str, ...]
+    joint_range: Array
+    torque_limit: Array
+    armature: Array
+    diagonal: NDArray[np.int64]
+    mass: float
+    gravity: Array
+    trunk: NDArray[np.int64]
+    trunk_weights: Array
+    excluded: NDArray[np.bool_]
+    terrain: Terrain
+
+
+def build(character: Character, terrain: Terrain, physics: Physics, control_rate: float) -> Model:
+    """Compile a model.
+
+    Args:
+        control_rate: [Hz]; the physics step is 1 / (control_rate * substeps).
+
+    Raises:
+        InputError: the numbers do not make a model, or the model is not as tall as it says.
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = character.name
+    spec.compiler.degree = False
+    _set_options(spec, physics, control_rate)
+    spec.visual.global_.offwidth = 1920
+    spec.visual.global_.offheight = 1080
+    add_terrain(spec, terrain)
+    try:
+        add_character(spec, character)
+        mj = spec.compile()
+    except ValueError as error:
+        reason = str(error).strip().splitlines()[0]
+        raise InputError(f"character {character.name!r} does not compile: {reason}") from None
+    _check(mj, character)
+    trunk = np.array([_body_id(mj, name, "character.trunk") for name in character.trunk])
+    excluded = np.zeros(mj.nbody, dtype=bool)
+    for name in character.exclude_from_control:
+        excluded[_body_id(mj, name, "character.exclude_from_control")] = True
+    hinges = mj.actuator_trnid[:, 0]
+    return Model(
+        mj=mj,
+        mjcf=spec.to_xml(),
+        joint_names=tuple(mj.joint(int(j)).name for j in hinges),
+        joint_range=mj.jnt_range[hinges].copy(),
+        torque_limit=mj.actuator_ctrlrange[:, 1].copy(),
+        armature=mj.dof_armature[ROOT_DOFS:].copy(),
+        diagonal=(mj.M_rowadr + mj.M_rownnz - 1).astype(np.int64),
+        mass=float(mj.body_subtreemass[1]),
+        gravity=mj.opt.gravity.copy(),
+        trunk=trunk,
+        trunk_weights=(mj.body_mass[trunk] / mj.body_mass[trunk].sum())[:, None],
+        excluded=excluded,
+        terrain=terrain,
+    )
+
+
+def _set_options(spec: mujoco.MjSpec, physics: Physics, control_rate: float) -> None:
+    option = spec.option
+    option.timestep = 1.0 / (control_rate * physics.substeps)
+    option.gravity = physics.gravity
+    option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{physics.integrator.upper()}")
+    option.cone = getattr(mujoco.mjtCone, f"mjCONE_{physics.cone.upper()}")
+    option.solver = getattr(mujoco.mjtSolver, f"mjSOL_{physics.solver.upper()}")
+    option.jacobian = getattr(mujoco.mjtJacobian, f"mjJAC_{physics.jacobian.upper()}")
+    for name in (
+        "iterations tolerance ls_iterations ls_tolerance noslip_iterations noslip_tolerance "
+        "ccd_iterations ccd_tolerance impratio density viscosity"
+    ).split():
+        setattr(option, name, getattr(physics, name))
+    option.wind = [0.0, 0.0, 0.0]
+    option.magnetic = [0.0, 0.0, 0.0]
+    option.enableflags = 0
+    option.disableflags = sum(
+        int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{name.upper()}")) for name in physics.disable
+    )
+    for default in (spec.default.geom, spec.default.pair):
+        default.solref = physics.contact_solref
+        default.solimp = physics.contact_solimp
+
+
+def _check(mj: mujoco.MjModel, character: Character) -> None:
+    if mj.nu != mj.nv - ROOT_DOFS:
+        raise InputError(
+            f"character {character.name!r} has {mj.nu} motors for {mj.nv - ROOT_DOFS} hinges; "
+            "every joint but the root needs one"
+        )
+    data = mujoco.MjData(mj)
+    mujoco.mj_forward(mj, data)
+    bodies = mj.geom_bodyid > 0
+    height = lowest_and_highest(mj, data, bodies)
+    if abs(height[1] - height[0] - character.height) > 0.02:
+        raise InputError(
+            f"character.height is {character.height:g} m, but the bodies stand "
+            f"{height[1] - height[0]:.3f} m tall"
+        )
+
+
+def lowest_and_highest(
+    mj: mujoco.MjModel, data: mujoco.MjData, chosen: NDArray[np.bool_]
+) -> tuple[float, float]:
+    """Lowest and highest world z [m] over the chosen spheres and capsules."""
+    along = np.where(
+        mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE,
+        np.abs(data.geom_xmat[:, 8]) * mj.geom_size[:, 1],
+        0.0,
+    )
+    reach = along + mj.geom_size[:, 0]
+    z = data.geom_xpos[:, 2]
+    return float((z - reach)[chosen].min()), float((z + reach)[chosen].max())
+
+
+def _body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
+    number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
+    if number < 0:
+        names = ", ".join(mj.body(i).name for i in range(1, mj.nbody))
+        raise InputError(f"{key} names the unknown body {name!r}; bodies: {names}")
+    return int(number)

@@ -1,0 +1,62 @@
+"""What the controller sees: one fresh reading of the simulated character."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from rotctl.mechanics.contacts import Contacts, read_contacts
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.momentum import Momentum, read_momentum
+from rotctl.rotations import Array
+
+
+@dataclass(frozen=True)
+class State:
+    """The character at the start of one control step.
+
+    Attributes:
+        time: [s].
+        position: (nq,) generalised position [m, quaternion, rad].
+        velocity: (nv,) generalised velocity [m/s, rad/s].
+        momentum: rotation indices and centre of mass.
+        contacts: contacts with the ground.
+        bias: (nv,) C of M qddot + C = S' tau + J' lambda: Coriolis, centrifugal and
+            gravity forces less the joints' passive ones [N, N m].
+        mass_diagonal: (nv,) diagonal of M, the composite inertia about each dof.
+        lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
+        data: the MuJoCo data behind all this, for products and solves with M. Its
+            arrays change when the physics steps: read it, keep nothing of it.
+    """
+
+    time: float
+    position: Array
+    velocity: Array
+    momentum: Momentum
+    contacts: Contacts
+    bias: Array
+    mass_diagonal: Array
+    lateral_axis: Array
+    data: mujoco.MjData
+
+    def solve_mass(self, mj: mujoco.MjModel, rows: Array) -> Array:
+        """Rows of right-hand sides (k, nv) to rows of M^-1 rhs (k, nv)."""
+        solved = np.empty_like(rows)
+        mujoco.mj_solveM(mj, self.data, solved, rows)
+        return solved
+
+
+def read(model: Model, data: mujoco.MjData) -> State:
+    """Read the state; positions and velocities must have been evaluated (`mj_step1`)."""
+    axis = (data.xmat[model.trunk, 1::3] * model.trunk_weights).sum(axis=0)
+    return State(
+        time=data.time,
+        position=data.qpos.copy(),
+        velocity=data.qvel.copy(),
+        momentum=read_momentum(model.mj, data),
+        contacts=read_contacts(model.mj, data),
+        bias=data.qfrc_bias - data.qfrc_passive,
+        mass_diagonal=data.M[model.diagonal],
+        lateral_axis=axis / np.sqrt(axis @ axis),
+        data=data,
+    )

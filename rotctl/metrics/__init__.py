@@ -1,0 +1,1 @@
+"""Log to numbers to verdicts."""

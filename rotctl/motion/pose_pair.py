@@ -1,0 +1,69 @@
+"""Two key poses r_a and r_b, constant or varying with the phase of a cycle.
+
+Each joint of a pose is a number [rad], or (mean, cosine, sine) [rad] over the phase theta:
+mean + cosine cos(theta) + sine sin(theta). A joint name without a side stands for both
+sides; joints not named are held at 0. A pose is clipped to the joints' ranges.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model
+from rotctl.rotations import Array
+from rotctl.settings import Finite
+
+Angle = Finite | tuple[Finite, Finite, Finite]
+SIDES = ("_l", "_r")
+
+
+@dataclass(frozen=True)
+class PosePair:
+    """The two poses of blend tracking, [Brown2013] section 4.3.
+
+    Attributes:
+        coefficients: (2, 3, nu) mean, cosine and sine of pose a and pose b [rad].
+        low, high: (nu,) joint ranges [rad].
+    """
+
+    coefficients: Array
+    low: Array
+    high: Array
+
+    def at(self, phase: float) -> Array:
+        """Both poses (2, nu) [rad] at a phase [rad]."""
+        poses = np.array([1.0, np.cos(phase), np.sin(phase)]) @ self.coefficients
+        return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
+
+
+def make_pose_pair(model: Model, a: Mapping[str, Angle], b: Mapping[str, Angle]) -> PosePair:
+    """Poses by joint name to arrays in motor order.
+
+    Raises:
+        InputError: a name is no joint of the model.
+    """
+    return PosePair(
+        coefficients=np.array(
+            [_coefficients(model, pose, key) for pose, key in ((a, "a"), (b, "b"))]
+        ),
+        low=model.joint_range[:, 0],
+        high=model.joint_range[:, 1],
+    )
+
+
+def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
+    columns = np.zeros((3, len(model.joint_names)))
+    index = {name: i for i, name in enumerate(model.joint_names)}
+    for name, angle in pose.items():
+        found = [index[n] for n in (name, *(name + side for side in SIDES)) if n in index]
+        if not found:
+            bases = sorted({n.removesuffix("_l").removesuffix("_r") for n in index})
+            raise InputError(
+                f"behaviour.poses.{key} names the unknown joint {name!r}; "
+                f"valid: {', '.join(bases)}, limb joints also with _l or _r"
+            )
+        values = (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle
+        columns[:, found] = np.array(values)[:, None]
+    return columns

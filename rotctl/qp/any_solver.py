@@ -1,0 +1,70 @@
+"""Any solver that the qpsolvers package knows: `qpsolvers:daqp`, `qpsolvers:piqp`, ..."""
+
+import warnings
+
+import numpy as np
+
+from rotctl.errors import InputError
+from rotctl.qp.problem import Problem, Shape, Solution, failed
+from rotctl.rotations import Array
+
+TOLERANCE = 1e-5  # accepted relative residual [-]
+LARGEST = 1e20  # a bound beyond this is none
+
+
+class AnySolver:
+    """One solver of qpsolvers, by name."""
+
+    shape: Shape = "rows"
+
+    def __init__(self, name: str) -> None:
+        """Look the solver up.
+
+        Raises:
+            InputError: qpsolvers is not installed, or does not know `name` here.
+        """
+        try:
+            import qpsolvers
+        except ImportError:
+            raise InputError(
+                f"controller.solver=qpsolvers:{name} needs the optional package qpsolvers; "
+                "install it with: pip install 'rotctl[solvers]'"
+            ) from None
+        if name not in qpsolvers.available_solvers:
+            known = ", ".join(sorted(qpsolvers.available_solvers)) or "none"
+            raise InputError(
+                f"controller.solver: qpsolvers has no solver {name!r} here; installed: {known}"
+            )
+        self.name = f"qpsolvers:{name}"
+        self._name = name
+        self._qpsolvers = qpsolvers
+
+    def solve(self, problem: Problem, start: Array | None) -> Solution:
+        """Solve, cold; `start` is ignored. See `Solver`."""
+        equal = problem.low == problem.high
+        above = ~equal & (problem.high < LARGEST)
+        below = ~equal & (problem.low > -LARGEST)
+        rows = np.concatenate((problem.G[above], -problem.G[below]))
+        limits = np.concatenate((problem.high[above], -problem.low[below]))
+        stated = self._qpsolvers.Problem(
+            problem.H,
+            problem.f,
+            rows if len(rows) else None,
+            limits if len(rows) else None,
+            problem.G[equal] if equal.any() else None,
+            problem.low[equal] if equal.any() else None,
+            np.maximum(problem.lower, -LARGEST),
+            np.minimum(problem.upper, LARGEST),
+        )
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # dense-to-sparse conversions, told once per call
+                answer = self._qpsolvers.solve_problem(stated, self._name)
+        except Exception as error:  # a solver's own failure of whatever type is a failed row
+            return failed(problem, f"{self.name}: {error}")
+        if not answer.found or answer.x is None or not np.isfinite(answer.x).all():
+            return failed(problem, f"{self.name} found no solution")
+        residual = problem.violation(answer.x) / (1.0 + float(np.abs(answer.x).max(initial=0.0)))
+        if not residual <= TOLERANCE:
+            return failed(problem, f"{self.name}: residual {residual:.1e} exceeds {TOLERANCE:.0e}")
+        return Solution(answer.x, True, 0, residual)

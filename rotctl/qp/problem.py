@@ -1,0 +1,89 @@
+"""A convex quadratic program and its answer, as plain data."""
+
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+
+from rotctl.rotations import Array
+
+Shape = Literal["bounds", "rows"]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """minimise 1/2 x'Hx + f'x subject to lower <= x <= upper, low <= Gx <= high.
+
+    Attributes:
+        H: (n, n) symmetric, positive semidefinite.
+        f: (n,).
+        lower, upper: (n,) bounds, may be infinite.
+        G: (k, n) rows; k = 0 where bounds are all there is.
+        low, high: (k,) limits of the rows; equal for an equality.
+    """
+
+    H: Array
+    f: Array
+    lower: Array
+    upper: Array
+    G: Array
+    low: Array
+    high: Array
+
+    def objective(self, x: Array) -> float:
+        """Value of the cost at x (n,)."""
+        return float(0.5 * x @ self.H @ x + self.f @ x)
+
+    def violation(self, x: Array) -> float:
+        """Largest violation of a bound or row at x (n,), in the constraint's own unit."""
+        product = self.G @ x
+        gaps = np.concatenate(
+            (self.lower - x, x - self.upper, self.low - product, product - self.high)
+        )
+        return float(max(0.0, gaps.max(initial=0.0)))
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What a solver returned.
+
+    Attributes:
+        x: (n,) the best point found; meaningless unless `solved`.
+        solved: the solver's own verdict, after its residuals were checked.
+        iterations: as the solver counts them; 0 where it does not say.
+        residual: relative residual of the optimality conditions [-], nan if unknown.
+        reason: why it is not solved, for the log.
+    """
+
+    x: Array
+    solved: bool
+    iterations: int
+    residual: float
+    reason: str = ""
+
+
+class Solver(Protocol):
+    """One way to solve a Problem.
+
+    Attributes:
+        name: as in `controller.solver`.
+        shape: `bounds` for a solver that knows no rows.
+    """
+
+    name: str
+    shape: Shape
+
+    def solve(self, problem: Problem, start: Array | None) -> Solution:
+        """Solve; `start` (n,) is a guess of the solution, or None."""
+        ...
+
+
+def without_rows(H: Array, f: Array, lower: Array, upper: Array) -> Problem:
+    """A problem whose only constraints are bounds."""
+    none = np.empty(0)
+    return Problem(H, f, lower, upper, np.empty((0, len(f))), none, none)
+
+
+def failed(problem: Problem, reason: str, iterations: int = 0) -> Solution:
+    """The answer of a solver that has none."""
+    return Solution(np.zeros(len(problem.f)), False, iterations, float("nan"), reason)

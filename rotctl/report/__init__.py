@@ -1,0 +1,1 @@
+"""Pictures and pages out of logs; never simulates."""

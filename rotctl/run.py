@@ -1,0 +1,157 @@
+"""One config to one log to one summary row."""
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rotctl.config import Config, to_yaml
+from rotctl.errors import InputError, LogError
+from rotctl.log import RunLog, TrajectoryBuffer, collect, write_run
+from rotctl.metrics.rolling import RollingMetrics, failure_reason, measure
+from rotctl.scenario import Scenario, build
+from rotctl.simulation.loop import simulate
+
+LOG_NAME = "run.h5"
+SUMMARY_NAME = "summary.json"
+Summary = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A run on disk.
+
+    Attributes:
+        folder: holds `run.h5` and `summary.json`.
+        summary: the summary row.
+        already_there: True if nothing was simulated because the run was there.
+    """
+
+    folder: Path
+    summary: Summary
+    already_there: bool
+
+    @property
+    def broke_down(self) -> bool:
+        """Whether the run itself failed, as opposed to the roll."""
+        return bool(self.summary["solver_failures"]) or str(
+            self.summary["failure_reason"]
+        ).startswith("physics")
+
+
+def run(
+    config: Config,
+    out: Path,
+    force: bool = False,
+    progress: Callable[[], None] = lambda: None,
+) -> Result:
+    """Simulate a config into `out/<run id>/`, unless that run is there already.
+
+    Args:
+        force: simulate again even so.
+        progress: called after every control step.
+
+    Raises:
+        InputError: the config does not make a run, or the folder cannot be written.
+    """
+    scenario = build(config)
+    folder = out / scenario.run_id
+    if not force:
+        summary = _existing(folder)
+        if summary is not None:
+            return Result(folder, summary, already_there=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror}") from None
+    if not os.access(folder, os.W_OK):
+        raise InputError(f"cannot write {folder}: Permission denied")
+    begin = time.perf_counter()
+    outcome = simulate(
+        scenario.model,
+        scenario.behaviour,
+        scenario.controller,
+        scenario.stepper,
+        scenario.start,
+        config.duration,
+        config.physics.contact_capacity,
+        progress,
+    )
+    wall = time.perf_counter() - begin
+    summary = summarise(scenario, outcome.buffer, outcome.breakdown, wall)
+    write_run(
+        folder / LOG_NAME,
+        outcome.buffer,
+        model_xml=scenario.model.mjcf,
+        attributes={
+            **collect(),
+            "config": to_yaml(config),
+            "run_id": scenario.run_id,
+            "seed": config.seed,
+            "wall_time": wall,
+            "outcome": summary,
+        },
+    )
+    _write_summary(folder / SUMMARY_NAME, summary)
+    return Result(folder, summary, already_there=False)
+
+
+def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall: float) -> Summary:
+    """The summary row of a simulated run; `wall` is the time the loop took [s]."""
+    config = scenario.config
+    metrics = measure(
+        buffer.arrays(),
+        config.criteria,
+        config.behaviour.angular_velocity,
+        1.0 / config.controller.rate,
+    )
+    reason = f"physics broke down at t = {metrics.duration:.2f} s: {breakdown}"
+    if not breakdown:
+        reason = failure_reason(metrics, config.criteria, config.duration)
+    return _row(scenario, metrics, reason, wall)
+
+
+def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) -> Summary:
+    config = scenario.config
+    row = {
+        "run_id": scenario.run_id,
+        "behaviour": config.behaviour.name,
+        "seed": config.seed,
+        "success": not reason,
+        "failure_reason": reason,
+        "duration": metrics.duration,
+        "revolutions": metrics.revolutions,
+        "angular_velocity_mean": metrics.angular_velocity_mean,
+        "angular_velocity_commanded": config.behaviour.angular_velocity,
+        "speed_mean": metrics.speed_mean,
+        "speed_commanded": config.behaviour.speed,
+        "heading_error_end": metrics.heading_error_end,
+        "lateral_drift": metrics.lateral_drift,
+        "longest_stall": metrics.longest_stall,
+        "torque_p99_fraction": metrics.torque_p99_fraction,
+        "solver_failures": metrics.solver_failures,
+        "real_time_factor": metrics.duration / wall,
+    }
+    # JSON has no NaN: a number that a broken-down run does not have is null.
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+
+
+def _existing(folder: Path) -> Summary | None:
+    try:
+        return RunLog.open(folder / LOG_NAME).outcome
+    except LogError:
+        return None
+
+
+def _write_summary(path: Path, summary: Summary) -> None:
+    part = path.with_suffix(".part")
+    try:
+        part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        os.replace(part, path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from None

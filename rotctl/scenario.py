@@ -1,0 +1,67 @@
+"""The composition root: the only place that knows all the parts of a run."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotctl.behaviours.rolling import Rolling
+from rotctl.config import Config, to_dict
+from rotctl.control import Controller
+from rotctl.log import SCHEMA_VERSION
+from rotctl.mechanics import model as models
+from rotctl.mechanics.model import Model
+from rotctl.simulation import start as starts
+from rotctl.simulation.start import Start
+from rotctl.simulation.stepping import MujocoStepper, Stepper
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One run, ready to be simulated once.
+
+    Attributes:
+        run_id: 12 hex digits; the same for the same config, log schema and model.
+    """
+
+    config: Config
+    model: Model
+    behaviour: Rolling
+    controller: Controller
+    stepper: Stepper
+    start: Start
+    run_id: str
+
+
+def build(config: Config) -> Scenario:
+    """Make all parts of a run.
+
+    Raises:
+        InputError: parts that do not fit together, with one clear line.
+    """
+    control = config.controller
+    model = models.build(config.character, config.terrain, config.physics, control.rate)
+    return Scenario(
+        config=config,
+        model=model,
+        behaviour=Rolling(
+            config.behaviour,
+            model,
+            control.excursion,
+            control.correction_time,
+            1.0 / control.rate,
+        ),
+        controller=Controller(model, control),
+        stepper=MujocoStepper(model, config.physics.substeps),
+        start=starts.draw(config.start, np.random.default_rng(config.seed)),
+        run_id=run_id(config, model),
+    )
+
+
+def run_id(config: Config, model: Model) -> str:
+    """Hash of the resolved config, the log's schema version and the model."""
+    canonical = json.dumps(
+        {"config": to_dict(config), "schema": SCHEMA_VERSION, "model": model.mjcf}, sort_keys=True
+    )
+    return hashlib.sha256(canonical.encode()).hexdigest()[:12]

@@ -1,0 +1,23 @@
+"""The validated, frozen dataclasses that settings everywhere in rotctl are made of."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, AllowInfNan, ConfigDict, Field, Strict
+
+STRICT = ConfigDict(extra="forbid")
+
+
+def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:
+    if pair[0] > pair[1]:
+        raise ValueError(f"the range [{pair[0]:g}, {pair[1]:g}] is empty: low must not exceed high")
+    return pair
+
+
+# Strict: a whole number will do for a float, but "1.0" or true will not.
+Finite = Annotated[float, Strict(), AllowInfNan(False)]
+Positive = Annotated[float, Strict(), AllowInfNan(False), Field(gt=0)]
+NonNegative = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0)]
+Fraction = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0, le=1)]
+Vector = tuple[Finite, Finite, Finite]
+NonNegativeVector = tuple[NonNegative, NonNegative, NonNegative]
+Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]

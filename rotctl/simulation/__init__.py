@@ -1,0 +1,1 @@
+"""Start states, the physics step and the loop."""

@@ -1,0 +1,155 @@
+"""The simulation loop: read, decide, record, step, sixty times a second."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import mujoco
+
+from rotctl.control import Controller, Decision, Desired
+from rotctl.errors import InputError
+from rotctl.log import TrajectoryBuffer
+from rotctl.mechanics.excursion import Excursion
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State, read
+from rotctl.rotations import Array
+from rotctl.simulation.start import Start, place
+from rotctl.simulation.stepping import Stepper
+
+INITIAL_BLEND = 0.5  # gamma before the first decision: no preference
+
+
+class Behaviour(Protocol):
+    """What the loop asks of a behaviour; see `rotctl.behaviours.rolling` for one."""
+
+    def pose(self, phase: float) -> Array:
+        """Pose (nu,) [rad] to start in."""
+        ...
+
+    def begin(self, phase: float) -> Excursion:
+        """Excursion at the start."""
+        ...
+
+    def advance(self, before: Excursion, state: State) -> Excursion:
+        """Excursion now."""
+        ...
+
+    def phase(self, now: Excursion) -> float:
+        """Phase angle [rad]."""
+        ...
+
+    def desired(self, state: State, now: Excursion) -> Desired:
+        """Wishes at this instant."""
+        ...
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a simulation ended.
+
+    Attributes:
+        buffer: every control step whose state could be trusted.
+        breakdown: why it ended early; empty if it ran to its end.
+        last_fallback: the last reason a solver gave for failing; empty if none did.
+    """
+
+    buffer: TrajectoryBuffer
+    breakdown: str
+    last_fallback: str
+
+
+def simulate(
+    model: Model,
+    behaviour: Behaviour,
+    controller: Controller,
+    stepper: Stepper,
+    start: Start,
+    duration: float,
+    capacity: int,
+    progress: Callable[[], None] = lambda: None,
+) -> Outcome:
+    """Run one simulation.
+
+    Args:
+        duration: simulated time [s], a whole number of control periods.
+        capacity: contacts a log row can hold.
+        progress: called after every control step.
+
+    Raises:
+        InputError: the duration is no whole number of control periods.
+    """
+    mj, rate = model.mj, controller.settings.rate
+    steps = round(duration * rate)
+    if abs(steps - duration * rate) > 1e-6 or steps < 1:
+        raise InputError(
+            f"duration={duration:g} s is no whole number of control steps of 1/{rate:g} s; "
+            f"nearest: {max(1, steps) / rate:g}"
+        )
+    data = mujoco.MjData(mj)
+    place(model, data, start, behaviour.pose(start.pitch))
+    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity)
+    buffer.model.joint[:] = model.joint_names
+    buffer.model.torque_limit[:] = model.torque_limit
+    now = behaviour.begin(start.pitch)
+    blend, last_fallback = INITIAL_BLEND, ""
+    for i in range(steps):
+        stepper.evaluate(data)
+        complaint = stepper.complaint(data)
+        if complaint:
+            buffer.add_event(i / rate, complaint)
+            return Outcome(buffer.trimmed(i), complaint, last_fallback)
+        state = read(model, data)
+        now = behaviour.advance(now, state)
+        decision = controller.decide(state, behaviour.desired(state, now), blend)
+        blend = decision.blend
+        if decision.reasons:
+            last_fallback = decision.reasons[-1]
+            buffer.add_event(state.time, last_fallback)
+        realised = stepper.advance(data, decision.torque, state.contacts)
+        _record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        progress()
+    return Outcome(buffer, stepper.complaint(data), last_fallback)
+
+
+def _record(
+    buffer: TrajectoryBuffer,
+    i: int,
+    state: State,
+    now: Excursion,
+    phase: float,
+    decision: Decision,
+    realised: Array,
+) -> None:
+    trajectory, momentum = buffer.trajectory, state.momentum
+    trajectory.time[i] = state.time
+    trajectory.qpos[i] = state.position
+    trajectory.qvel[i] = state.velocity
+    trajectory.ctrl[i] = decision.torque
+    trajectory.com[i] = momentum.com
+    trajectory.com_velocity[i] = momentum.com_velocity
+    trajectory.linear_momentum[i] = momentum.linear
+    trajectory.angular_momentum[i] = momentum.angular
+    trajectory.angular_velocity[i] = momentum.angular_velocity
+    trajectory.angular_excursion[i] = now.angle
+    trajectory.linear_momentum_rate_desired[i] = decision.rates_wanted[:3]
+    trajectory.angular_momentum_rate_desired[i] = decision.rates_wanted[3:]
+    trajectory.linear_momentum_rate_predicted[i] = decision.rates_predicted[:3]
+    trajectory.angular_momentum_rate_predicted[i] = decision.rates_predicted[3:]
+    trajectory.blend[i] = decision.blend
+    trajectory.phase[i] = phase
+    trajectory.lateral_axis[i] = state.lateral_axis
+    found = state.contacts
+    m = min(found.count, buffer.contacts.body.shape[1])
+    contacts = buffer.contacts
+    contacts.count[i] = found.count
+    contacts.body[i, :m] = found.body[:m]
+    contacts.position[i, :m] = found.position[:m]
+    contacts.normal[i, :m] = found.frame[:m, 0]
+    contacts.force_predicted[i, :m] = decision.force[:m]
+    contacts.force_realised[i, :m] = realised[:m]
+    contacts.used[i, :m] = decision.used[:m]
+    solver = buffer.solver
+    solver.status[i] = decision.status
+    solver.iterations[i] = decision.iterations
+    solver.residual[i] = decision.residual
+    solver.fallback[i] = decision.fallback

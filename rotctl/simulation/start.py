@@ -1,0 +1,75 @@
+"""Start states, drawn from the seed."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.mechanics.model import Model, lowest_and_highest
+from rotctl.rotations import Array, cross
+from rotctl.settings import STRICT, Range
+
+
+@validated(frozen=True, config=STRICT)
+class StartSettings:
+    """Uniform ranges that a start state is drawn from.
+
+    Attributes:
+        pitch: of the pelvis about world y [rad]; negative leans back.
+        speed_x, speed_y: velocity of the centre of mass [m/s].
+        angular_velocity_x, angular_velocity_y, angular_velocity_z: of the whole body,
+            moving as one rigid piece [rad/s].
+    """
+
+    name: str
+    pitch: Range
+    speed_x: Range
+    speed_y: Range
+    angular_velocity_x: Range
+    angular_velocity_y: Range
+    angular_velocity_z: Range
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class Start:
+    """A drawn start: pitch [rad], velocity (3,) [m/s], angular velocity (3,) [rad/s]."""
+
+    pitch: float
+    velocity: Array
+    angular_velocity: Array
+
+
+def draw(settings: StartSettings, generator: np.random.Generator) -> Start:
+    """Draw pitch, speeds and angular velocities, in the order the settings list them."""
+    pitch, vx, vy, wx, wy, wz = (
+        generator.uniform(*bounds)
+        for bounds in (
+            settings.pitch,
+            settings.speed_x,
+            settings.speed_y,
+            settings.angular_velocity_x,
+            settings.angular_velocity_y,
+            settings.angular_velocity_z,
+        )
+    )
+    return Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
+
+
+def place(model: Model, data: mujoco.MjData, start: Start, pose: Array) -> None:
+    """Put the character into `pose` (nu,) [rad], its lowest point on the ground, moving."""
+    mj = model.mj
+    mujoco.mj_resetData(mj, data)
+    data.qpos[7:] = pose
+    half = 0.5 * start.pitch
+    data.qpos[3:7] = [np.cos(half), 0.0, np.sin(half), 0.0]
+    mujoco.mj_kinematics(mj, data)
+    solid = (mj.geom_bodyid > 0) & (mj.geom_contype > 0)
+    lowest, _ = lowest_and_highest(mj, data, solid)
+    data.qpos[2] += model.terrain.height(0.0, 0.0) - lowest
+    mujoco.mj_kinematics(mj, data)
+    mujoco.mj_comPos(mj, data)
+    offset = data.xpos[1] - data.subtree_com[1]
+    data.qvel[:3] = start.velocity + cross(start.angular_velocity, offset)
+    data.qvel[3:6] = data.xmat[1].reshape(3, 3).T @ start.angular_velocity

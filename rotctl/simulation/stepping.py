@@ -1,0 +1,77 @@
+"""Advancing the physics by one control period: an interface, and MuJoCo's own stepping."""
+
+from typing import Protocol
+
+import mujoco
+import numpy as np
+
+from rotctl.mechanics.contacts import Contacts, realised_forces
+from rotctl.mechanics.model import Model
+from rotctl.rotations import Array
+
+WARNINGS = {
+    mujoco.mjtWarning.mjWARN_INERTIA: "nearly singular inertia matrix",
+    mujoco.mjtWarning.mjWARN_CONTACTFULL: "too many contacts",
+    mujoco.mjtWarning.mjWARN_CNSTRFULL: "too many constraints",
+    mujoco.mjtWarning.mjWARN_BADQPOS: "position not finite or too large",
+    mujoco.mjtWarning.mjWARN_BADQVEL: "velocity not finite or too large",
+    mujoco.mjtWarning.mjWARN_BADQACC: "acceleration not finite or too large",
+    mujoco.mjtWarning.mjWARN_BADCTRL: "control not finite",
+}
+
+
+class Stepper(Protocol):
+    """A way to step the physics; the state lives in MuJoCo's data."""
+
+    def evaluate(self, data: mujoco.MjData) -> None:
+        """Bring positions, contacts and bias up to date with the state in `data`."""
+        ...
+
+    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> Array:
+        """Hold `torque` (nu,) [N m] for one control period.
+
+        Returns:
+            The forces (m, 3) [N], world axes, that the first step gave `contacts`.
+        """
+        ...
+
+    def complaint(self, data: mujoco.MjData) -> str:
+        """Why the state can no longer be trusted; empty while it can."""
+        ...
+
+
+class MujocoStepper:
+    """MuJoCo's soft contacts: `substeps` steps with the torque held."""
+
+    def __init__(self, model: Model, substeps: int) -> None:
+        """Step `model` `substeps` times per control period."""
+        self._mj = model.mj
+        self._substeps = substeps
+        self._period = substeps * model.mj.opt.timestep
+        self._steps = 0
+
+    def evaluate(self, data: mujoco.MjData) -> None:
+        """First half of a step, which needs no torque."""
+        mujoco.mj_step1(self._mj, data)
+
+    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> Array:
+        """Second half of the step begun by `evaluate`, then the other substeps."""
+        data.ctrl[:] = torque
+        mujoco.mj_step2(self._mj, data)
+        force = realised_forces(self._mj, data, contacts)
+        if self._substeps > 1:
+            mujoco.mj_step(self._mj, data, self._substeps - 1)
+        self._steps += 1
+        return force
+
+    def complaint(self, data: mujoco.MjData) -> str:
+        """MuJoCo's warnings, a state that is not finite, or a clock that was reset."""
+        counts = data.warning.number
+        if counts.any():
+            kind = mujoco.mjtWarning(int(np.flatnonzero(counts)[0]))
+            return f"MuJoCo warns: {WARNINGS[kind]}"
+        if not np.isfinite(data.qpos.sum() + data.qvel.sum()):
+            return "the state is not finite"
+        if abs(data.time - self._steps * self._period) > 0.5 * self._period:
+            return "MuJoCo reset the simulation"
+        return ""

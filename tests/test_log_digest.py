@@ -1,0 +1,39 @@
+"""Every part of a log's content moves its hash; nothing else does."""
+
+import numpy as np
+import pytest
+
+from rotctl.log import TrajectoryBuffer
+from rotctl.log.digest import content_sha256
+from rotctl.log.schema import ATTRIBUTES, SCHEMA
+
+PLAIN = {int: 1, str: "x", bool: True, float: 1.0}
+ATTRIBUTE_VALUES = {name: PLAIN[kind] for name, kind in ATTRIBUTES.items()}
+
+
+def arrays():
+    buffer = TrajectoryBuffer.allocate(steps=2, nq=3, nv=3, nu=3, capacity=1)
+    buffer.add_event(0.0, "start")
+    return {**buffer.arrays(), "model/mjcf": np.array(b"<mujoco/>")}
+
+
+@pytest.mark.parametrize("name", SCHEMA)
+def test_every_dataset_counts(name):
+    changed = arrays()
+    changed[name] = np.zeros_like(changed[name])
+    if name.partition("/")[2] not in ("body", "text", "mjcf"):
+        changed[name] = changed[name] + np.ones((), changed[name].dtype)
+    assert content_sha256(changed, ATTRIBUTE_VALUES) != content_sha256(arrays(), ATTRIBUTE_VALUES)
+
+
+@pytest.mark.parametrize("name", ATTRIBUTES)
+def test_every_attribute_counts_but_the_hash_and_the_end_mark(name):
+    changed = {**ATTRIBUTE_VALUES, name: 2}
+    same = content_sha256(arrays(), changed) == content_sha256(arrays(), ATTRIBUTE_VALUES)
+    assert same == (name in ("content_sha256", "complete"))
+
+
+def test_the_shape_counts():
+    changed = arrays()
+    changed["trajectory/qpos"] = changed["trajectory/qpos"].reshape(3, 2)
+    assert content_sha256(changed, ATTRIBUTE_VALUES) != content_sha256(arrays(), ATTRIBUTE_VALUES)
