@@ -1,11 +1,14 @@
 """The command line: subcommands that import only what they need."""
 
 import argparse
+import io
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from rotctl import __version__
 from rotctl.errors import InputError, RotctlError
@@ -34,22 +37,94 @@ def main(argv: Sequence[str] | None = None) -> int:
     # One BLAS thread: matrices here are small, and runs in parallel are worth more.
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")
-    arguments = _parser().parse_args(argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
+    arguments = _parse(argv)
     try:
-        return int(arguments.command(arguments))
+        with _terminated_like_interrupted():
+            code = int(arguments.command(arguments))
+            if sys.stdout:  # None where the shell has closed it
+                sys.stdout.flush()
+            return code
     except RotctlError as error:
-        print(f"rotctl: {' '.join(str(error).split())}", file=sys.stderr)
+        print(f"rotctl: {_one_line(str(error))}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
-        print("rotctl: interrupted; nothing was written", file=sys.stderr)
+        print("rotctl: interrupted; an unfinished run leaves no log", file=sys.stderr)
         return 130
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # whoever read our output has seen enough
+        _drop_stdout()
         return 0
+    except OSError as error:
+        _drop_stdout()
+        what = f"{error.filename or 'output'}: {error.strerror or error}"
+        print(f"rotctl: {_one_line(what)}", file=sys.stderr)
+        return 2
+
+
+@contextmanager
+def _terminated_like_interrupted() -> Iterator[None]:
+    """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does."""
+
+    def interrupt(signum: int, frame: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    try:
+        before = signal.signal(signal.SIGTERM, interrupt)
+    except ValueError:  # not the main thread, which alone gets signals
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _drop_stdout() -> None:
+    """Keep the interpreter from flushing to a closed or full stdout once more."""
+    with suppress(OSError, AttributeError):  # it is no file, or None
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _one_line(text: str) -> str:
+    return _printable(" ".join(text.split()))
+
+
+def _printable(text: str) -> str:
+    """Text from files and shells, without what could steer a terminal."""
+    return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
+
+
+class _Parser(argparse.ArgumentParser):
+    """One line an error, and no abbreviations that a later option would break."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {_one_line(message)}; see {self.prog} --help\n")
+
+
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    """Arguments, where overrides and options may be mixed: argparse takes one block alone."""
+    arguments, others = _parser().parse_known_args(argv)
+    takes_more = "overrides" in arguments
+    unknown = [text for text in others if text.startswith("-") or not takes_more]
+    if unknown:
+        arguments.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+    if takes_more:
+        arguments.overrides = [*arguments.overrides, *others]
+    return arguments
+
+
+def _folder(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty")
+    return Path(text)
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="rotctl",
         description="Physics-based rotational character control: a simulated human that rolls.",
         epilog=EPILOG,
@@ -65,7 +140,9 @@ def _parser() -> argparse.ArgumentParser:
         "a hash of the config: a run that is already there is reported, not redone.",
     )
     run.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
-    run.add_argument("--out", type=Path, default=Path("runs"), help="folder for runs [%(default)s]")
+    run.add_argument(
+        "--out", type=_folder, default=Path("runs"), help="folder for runs [%(default)s]"
+    )
     run.add_argument("--json", action="store_true", help="print the summary row as JSON on stdout")
     run.add_argument("--quiet", action="store_true", help="no progress, no notices")
     run.add_argument("--force", action="store_true", help="redo a run that is already there")
@@ -78,16 +155,32 @@ def _parser() -> argparse.ArgumentParser:
         description="Draw a run from its log alone; nothing is simulated again.",
     )
     render.add_argument("log", type=Path, metavar="RUN.h5")
-    render.add_argument("--filmstrip", type=Path, metavar="OUT.png", required=True)
+    render.add_argument(
+        "--filmstrip",
+        type=Path,
+        metavar="OUT.png",
+        required=True,
+        help="side view that follows the character, frame beside frame",
+    )
     render.add_argument("--frames", type=int, default=12, help="number of frames [%(default)s]")
     render.add_argument("--from", type=float, metavar="S", dest="start", help="first time [s]")
     render.add_argument("--to", type=float, metavar="S", dest="end", help="last time [s]")
     render.set_defaults(command=_render)
 
-    listing = commands.add_parser("list", help="config groups and their choices")
+    listing = commands.add_parser(
+        "list",
+        help="config groups and their choices",
+        description="List the config groups and the choices of each. Choose with GROUP=CHOICE, "
+        "as in: rotctl run start=rest",
+    )
     listing.set_defaults(command=_list)
 
-    show = commands.add_parser("show", help="print the composed config as YAML")
+    show = commands.add_parser(
+        "show",
+        help="print the composed config as YAML",
+        description="Print the config that a run with these overrides gets, as YAML: every key "
+        "there can be overridden, as in: rotctl show controller.gains.pose_damping=40",
+    )
     show.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
     show.set_defaults(command=_show)
 
@@ -107,6 +200,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     bench.add_argument("--repeats", type=int, default=5, help="median over this many [%(default)s]")
     bench.set_defaults(command=_bench)
+
+    for command in commands.choices.values():
+        command.set_defaults(parser=command)
     return parser
 
 
@@ -122,13 +218,18 @@ def _run(arguments: argparse.Namespace) -> int:
         total=steps,
         desc=f"{config.behaviour.name} seed {config.seed}",
         unit="step",
-        disable=arguments.quiet,
+        disable=arguments.quiet or None,  # None: only where somebody watches
         leave=False,
-        mininterval=0.2 if sys.stderr.isatty() else 10.0,
+        delay=0.2,
     ) as bar:
         result = run(config, arguments.out, arguments.force, bar.update)
-    if result.already_there and not arguments.quiet:
-        print(f"already there, not redone (--force redoes it): {result.folder}", file=sys.stderr)
+    if not arguments.quiet:
+        if result.already_there:
+            notice = f"already there, not redone (--force redoes it): {result.folder}"
+            print(notice, file=sys.stderr)
+        elif result.replaced:
+            notice = f"simulated again, the log there could not be used: {result.replaced}"
+            print(_one_line(notice), file=sys.stderr)
     picture = _filmstrip_beside(result.folder / LOG_NAME) if arguments.filmstrip else ""
     if arguments.json:
         import json
@@ -161,7 +262,7 @@ def _render(arguments: argparse.Namespace) -> int:
     from rotctl.report.filmstrip import filmstrip
 
     filmstrip(
-        RunLog.open(arguments.log),
+        RunLog.open(_log_file(arguments.log)),
         arguments.filmstrip,
         frames=arguments.frames,
         start=arguments.start,
@@ -169,6 +270,12 @@ def _render(arguments: argparse.Namespace) -> int:
     )
     print(arguments.filmstrip)
     return 0
+
+
+def _log_file(path: Path) -> Path:
+    if os.path.isdir(path):
+        raise InputError(f"{path}: is a folder; name the log in it, such as {path / 'run.h5'}")
+    return path
 
 
 def _list(arguments: argparse.Namespace) -> int:
@@ -193,8 +300,8 @@ def _show(arguments: argparse.Namespace) -> int:
 def _inspect(arguments: argparse.Namespace) -> int:
     from rotctl.log import RunLog
 
-    log = RunLog.open(arguments.log)
-    print(_described(log))
+    log = RunLog.open(_log_file(arguments.log))
+    print(_printable(_described(log)))
     log.verify()
     print("\nintegrity  complete, checksums match")
     return 0

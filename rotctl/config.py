@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
+from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
@@ -28,6 +29,8 @@ from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
+
+LONGEST_OVERRIDE = 10_000  # characters; Hydra's parser takes seconds for a megabyte
 
 
 @validated(frozen=True, config=STRICT)
@@ -62,14 +65,13 @@ def load(overrides: list[str]) -> Config:
     Raises:
         InputError: one line that names the bad value and the valid choices or range.
     """
-    for override in overrides:
-        _refuse(override)
+    keys = [_checked_key(override) for override in overrides]
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
             composed = OmegaConf.to_container(compose("config", overrides), resolve=True)
-    except (HydraException, OmegaConfBaseException) as error:
-        raise InputError(_explain(error)) from None
+    except (HydraException, OmegaConfBaseException, ValueError) as error:
+        raise InputError(_explain(error, keys)) from None
     return check(composed)
 
 
@@ -82,18 +84,12 @@ def check(data: Any) -> Config:
     try:
         return _ADAPTER.validate_python(data)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(str(part) for part in first["loc"])
-        message = first["msg"].removeprefix("Value error, ")
-        message = message[:1].lower() + message[1:]
-        if first["type"] in ("unexpected_keyword_argument", "missing"):
-            raise InputError(f"{where}: {_unknown_or_missing(data, first['loc'])}") from None
-        raise InputError(f"{where}={_brief(first['input'])}: {message}") from None
+        raise InputError(_complaint(data, error.errors(include_url=False))) from None
 
 
 def to_dict(config: Config) -> dict[str, Any]:
     """The config as plain data."""
-    return asdict(config)  # type: ignore[call-overload]
+    return asdict(config)
 
 
 def to_yaml(config: Config) -> str:
@@ -102,57 +98,126 @@ def to_yaml(config: Config) -> str:
     return yaml.safe_dump(plain, sort_keys=False, default_flow_style=None, width=100)
 
 
-def _refuse(override: str) -> None:
+def _checked_key(override: str) -> str:
+    """The key that an override changes, if it is one that this tool takes.
+
+    Raises:
+        InputError: it is not; one line that says why.
+    """
+    shown = f"override {_clip(override)!r}"
+    if len(override) > LONGEST_OVERRIDE:
+        raise InputError(f"{shown}: longer than {LONGEST_OVERRIDE} characters")
     if "${" in override or "_target_" in override:
-        raise InputError(
-            f"override {override!r}: interpolations and _target_ are not honoured; give a value"
-        )
+        raise InputError(f"{shown}: interpolations and _target_ are not honoured; give a value")
     if re.match(r"[+~]*hydra[./=]", override):
-        raise InputError(f"override {override!r}: Hydra's own settings cannot be changed here")
+        raise InputError(f"{shown}: Hydra's own settings cannot be changed here")
     if "=" not in override and not override.startswith("~"):
-        raise InputError(f"override {override!r} has no '='; write key=value, such as seed=3")
+        raise InputError(f"{shown} has no '='; write key=value, such as seed=3")
+    try:
+        parsed = OverridesParser.create().parse_override(override)
+        sweeps = parsed.is_sweep_override()
+        value = None if sweeps or parsed.is_delete() else parsed.value()
+    except (HydraException, RecursionError, ValueError):
+        raise InputError(
+            f"{shown}: cannot be read; write key=value, and quote a text with special "
+            "characters: \"key='a text'\""
+        ) from None
+    key = str(parsed.key_or_group)
+    if not key:
+        raise InputError(f"{shown} has no key; write key=value, such as seed=3")
+    if sweeps:
+        raise InputError(f"{shown}: run takes one value for {key}; start one run for each")
+    if value == {}:
+        raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
+    choices = groups().get(key, {})
+    if (
+        choices
+        and not parsed.is_delete()
+        and not isinstance(value, dict)
+        and value not in [*choices]
+    ):
+        raise InputError(f"{key}={_brief(value)}: no such choice; valid: {', '.join(choices)}")
+    return key
 
 
-def _explain(error: Exception) -> str:
+def _explain(error: Exception, keys: list[str]) -> str:
     """Hydra's messages in one line, with the valid keys where a key is unknown."""
     text = str(error)
-    struct = re.search(r"Could not override '([^']+)'", text)
-    if struct:
-        return _unknown_key(struct.group(1))
-    group = re.search(r"Could not find '([^/']+)/([^']+)'", text)
-    if group and group.group(1) in groups():
-        name, choice = group.groups()
-        return f"{name}={choice}: no such choice; valid: {', '.join(groups()[name])}"
-    override = re.search(r"Could not override '([^']+)'\.\s*No match in the defaults list", text)
-    if override:
-        return _unknown_key(override.group(1))
+    named = re.search(r"Could not override '([^']+)'", text)
+    for key in [named.group(1)] if named else keys:
+        complaint = _unknown_key(key)
+        if complaint:
+            return complaint
     return " ".join(text.split())
 
 
 def _unknown_key(key: str) -> str:
-    data = yaml.safe_load(to_yaml(load([])))
+    """What is wrong with a key, and the valid ones; empty if it is in the default config."""
+    data: Any = to_dict(load([]))
     parts = key.split(".")
     for depth, part in enumerate(parts):
-        if not isinstance(data, dict) or part not in data:
+        inner = _member(data, part)
+        if inner is _NOTHING:
             where = ".".join(parts[:depth])
             keys = ", ".join(data) if isinstance(data, dict) else "none, it is a value"
             return f"unknown key {key!r}; valid keys{' under ' + where if where else ''}: {keys}"
-        data = data[part]
-    return f"cannot override {key!r}"
+        data = inner
+    return ""
 
 
-def _unknown_or_missing(data: Any, loc: tuple[int | str, ...]) -> str:
-    inner = data
-    for part in loc[:-1]:
-        try:
-            inner = inner[part]
-        except (KeyError, IndexError, TypeError):
-            break
-    if isinstance(inner, dict) and loc[-1] in inner:
-        return "unknown key"
-    return "missing"
+_NOTHING = object()
+
+
+def _member(data: Any, part: int | str) -> Any:
+    """One step down into plain data; `_NOTHING` where there is no such member."""
+    try:
+        return data[int(part) if isinstance(data, list | tuple) else part]
+    except (KeyError, IndexError, TypeError, ValueError):
+        return _NOTHING
+
+
+_WORDS = {
+    "tuple_type": "must be a list, in brackets",
+    "dict_type": "must be keys with values",
+    "dataclass_type": "must be keys with values",
+}
+
+
+def _complaint(data: Any, errors: list[Any]) -> str:
+    """One line on the first thing that pydantic found wrong."""
+    first = errors[0]
+    kind, loc = first["type"], first["loc"]
+    # Of loc, what is there in the data: pydantic adds the types of a union.
+    path, found = [], data
+    for part in loc:
+        inner = _member(found, part)
+        if inner is not _NOTHING:
+            path.append(str(part))
+            found = inner
+    where = ".".join(path)
+    if kind == "unexpected_keyword_argument":
+        return _unknown_key(where) or f"unknown key {where!r}"
+    if kind == "missing" and isinstance(found, list):
+        # A list that is too short: pydantic counts the values that are not there.
+        wanted = 1 + max(e["loc"][-1] for e in errors if e["loc"][:-1] == loc[:-1])
+        return f"{where}={_brief(found)}: must have {wanted} values"
+    if kind == "missing":
+        return f"{'.'.join(map(str, loc))}: missing, it cannot be left out"
+    limits = first.get("ctx", {})
+    if kind == "too_long":
+        message = f"too many values, at most {limits['max_length']}"
+    elif kind == "too_short":
+        message = f"too few values, at least {limits['min_length']}"
+    else:
+        message = _WORDS.get(kind) or first["msg"].removeprefix("Value error, ")
+        message = re.sub(r"^Input should be", "must be", message)
+        message = message[:1].lower() + message[1:]
+    return f"{where}={_brief(found)}: {message}"
 
 
 def _brief(value: Any) -> str:
-    text = json.dumps(value, default=str)
+    return _clip(str(value) if isinstance(value, float) else json.dumps(value, default=str))
+
+
+def _clip(text: str) -> str:
     return text if len(text) <= 60 else text[:57] + "..."

@@ -21,9 +21,18 @@ def conf_dir() -> Path:
 
 
 def groups() -> dict[str, dict[str, str]]:
-    """Config groups to their choices to a line of description each, sorted."""
+    """Config groups to their choices to a line of description each, sorted.
+
+    The line is the file's `description`, or else the comment that the file opens with.
+    """
     found: dict[str, dict[str, str]] = {}
     for path in sorted(conf_dir().glob("*/*.yaml")):
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-        found.setdefault(path.parent.name, {})[path.stem] = str(data.get("description", ""))
+        text = path.read_text(encoding="utf-8")
+        description = (yaml.safe_load(text) or {}).get("description") or _first_comment(text)
+        found.setdefault(path.parent.name, {})[path.stem] = str(description)
     return found
+
+
+def _first_comment(text: str) -> str:
+    first = text.partition("\n")[0]
+    return first.removeprefix("#").strip() if first.startswith("#") else ""

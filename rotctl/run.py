@@ -4,10 +4,14 @@ import json
 import math
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import mujoco
+import numpy as np
 
 from rotctl.config import Config, to_yaml
 from rotctl.errors import InputError, LogError
@@ -29,11 +33,13 @@ class Result:
         folder: holds `run.h5` and `summary.json`.
         summary: the summary row.
         already_there: True if nothing was simulated because the run was there.
+        replaced: why the log that was there was not used; empty if it was, or there was none.
     """
 
     folder: Path
     summary: Summary
     already_there: bool
+    replaced: str = ""
 
     @property
     def broke_down(self) -> bool:
@@ -47,7 +53,7 @@ def run(
     config: Config,
     out: Path,
     force: bool = False,
-    progress: Callable[[], None] = lambda: None,
+    progress: Callable[[], object] = lambda: None,
 ) -> Result:
     """Simulate a config into `out/<run id>/`, unless that run is there already.
 
@@ -58,31 +64,39 @@ def run(
     Raises:
         InputError: the config does not make a run, or the folder cannot be written.
     """
-    scenario = build(config)
+    with _mujoco_warnings():
+        scenario = build(config)
     folder = out / scenario.run_id
-    if not force:
-        summary = _existing(folder)
-        if summary is not None:
-            return Result(folder, summary, already_there=True)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot write {folder}: {error.strerror}") from None
-    if not os.access(folder, os.W_OK):
-        raise InputError(f"cannot write {folder}: Permission denied")
+    replaced = ""
+    if not force and os.path.lexists(folder / LOG_NAME):
+        try:
+            return Result(folder, _existing(folder, scenario.run_id), already_there=True)
+        except LogError as error:
+            replaced = str(error)
+    with _writable(folder):
+        summary = _simulated(scenario, folder, progress)
+    return Result(folder, summary, already_there=False, replaced=replaced)
+
+
+def _simulated(scenario: Scenario, folder: Path, progress: Callable[[], object]) -> Summary:
+    config = scenario.config
     begin = time.perf_counter()
-    outcome = simulate(
-        scenario.model,
-        scenario.behaviour,
-        scenario.controller,
-        scenario.stepper,
-        scenario.start,
-        config.duration,
-        config.physics.contact_capacity,
-        progress,
-    )
+    # What is not finite is found by the loop and told by the log, not by numpy on stderr.
+    with np.errstate(all="ignore"), _mujoco_warnings() as warnings:
+        outcome = simulate(
+            scenario.model,
+            scenario.behaviour,
+            scenario.controller,
+            scenario.stepper,
+            scenario.start,
+            config.duration,
+            config.physics.contact_capacity,
+            progress,
+        )
     wall = time.perf_counter() - begin
-    summary = summarise(scenario, outcome.buffer, outcome.breakdown, wall)
+    # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
+    breakdown = outcome.breakdown or (f"MuJoCo warns: {warnings[0]}" if warnings else "")
+    summary = summarise(scenario, outcome.buffer, breakdown, wall)
     write_run(
         folder / LOG_NAME,
         outcome.buffer,
@@ -97,7 +111,7 @@ def run(
         },
     )
     _write_summary(folder / SUMMARY_NAME, summary)
-    return Result(folder, summary, already_there=False)
+    return summary
 
 
 def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall: float) -> Summary:
@@ -140,11 +154,48 @@ def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) 
     return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
 
 
-def _existing(folder: Path) -> Summary | None:
+def _existing(folder: Path, run_id: str) -> Summary:
+    """The summary of the run in `folder`; puts `summary.json` back if a kill prevented it.
+
+    Raises:
+        LogError: the log there is not whole, or of another run.
+    """
+    log = RunLog.open(folder / LOG_NAME)
+    log.verify()
+    if log.attributes["run_id"] != run_id:
+        raise LogError(f"{log.path}: is run {log.attributes['run_id']}, expected {run_id}")
+    if not (folder / SUMMARY_NAME).exists():
+        _write_summary(folder / SUMMARY_NAME, log.outcome)
+    return log.outcome
+
+
+@contextmanager
+def _mujoco_warnings() -> Iterator[list[str]]:
+    """Collects MuJoCo's warnings, which else go to stdout and into a MUJOCO_LOG.TXT."""
+    before = mujoco.get_mju_user_warning()
+    heard: list[str] = []
+    mujoco.set_mju_user_warning(heard.append)
     try:
-        return RunLog.open(folder / LOG_NAME).outcome
-    except LogError:
-        return None
+        yield heard
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+@contextmanager
+def _writable(folder: Path) -> Iterator[None]:
+    """Make `folder` before the work starts; no empty one stays behind if that fails."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror}") from None
+    try:
+        if not os.access(folder, os.W_OK):
+            raise InputError(f"cannot write {folder}: no permission, or read-only")
+        yield
+    except BaseException:
+        with suppress(OSError):  # it is not empty: an earlier run is in it
+            folder.rmdir()
+        raise
 
 
 def _write_summary(path: Path, summary: Summary) -> None:
@@ -153,5 +204,6 @@ def _write_summary(path: Path, summary: Summary) -> None:
         part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         os.replace(part, path)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None

@@ -44,7 +44,7 @@ def _reduced(terms: Terms, solver: Solver) -> Answer:
     H = np.zeros((n + 1, n + 1))
     f = np.zeros(n + 1)
     reach = np.empty((n, n + 2))  # y = reach @ [lambda, gamma, 1]
-    pulled = np.zeros((n, n + 2))  # K @ reach
+    pulled: Array = np.zeros((n, n + 2))  # K @ reach
     if m and s > 0:
         reach[:, :n] = terms.mobility
         reach[:, n] = terms.actuation @ difference

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rotctl.control import condensed, literal
 from rotctl.control.answer import Answer
+from rotctl.control.decision import POSE_ONLY, SOLVED_BY_FALLBACK, Decision
 from rotctl.control.pose import PoseTracker
 from rotctl.control.settings import ControllerSettings
 from rotctl.control.supervisor import RULES, Evidence
@@ -16,40 +17,6 @@ from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.qp import Solution, Solver, make_solver
-from rotctl.rotations import Array
-
-SOLVED_BY_FALLBACK, POSE_ONLY = 1, 2  # status; 0 is solved by the chosen solver
-
-
-@dataclass(frozen=True)
-class Decision:
-    """What the controller does at one instant.
-
-    Attributes:
-        torque: (nu,) within the limits [N m].
-        blend: gamma.
-        used: (m,) True for contacts of the second pass.
-        force: (m, 3) predicted contact forces, world axes [N]; zero where unused.
-        rates_wanted, rates_predicted: (6,) Ldot and Hdot [N, N m].
-        status: 0, SOLVED_BY_FALLBACK or POSE_ONLY.
-        fallback: which link of the chain gave the torque, 0 = the chosen solver.
-        iterations: of all passes.
-        residual: of the last pass.
-        reasons: why solvers before the last link failed.
-    """
-
-    torque: Array
-    blend: float
-    used: NDArray[np.bool_]
-    force: Array
-    rates_wanted: Array
-    rates_predicted: Array
-    status: int
-    fallback: int
-    iterations: int
-    residual: float
-    reasons: tuple[str, ...]
-
 
 class Controller:
     """Decides torques; keeps workspaces, but no memory of the past."""
@@ -69,9 +36,9 @@ class Controller:
         self.model = model
         self.settings = settings
         self._tracker = PoseTracker(model, settings.gains, 1.0 / settings.rate)
-        self._chain: list[tuple[str, Solver]] = [(settings.form, solver)]
+        self.chain: list[tuple[str, Solver]] = [(settings.form, solver)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
-            self._chain.append(("condensed", make_solver("boxqp")))
+            self.chain.append(("condensed", make_solver("boxqp")))
 
     def decide(self, state: State, desired: Desired, blend: float) -> Decision:
         """Torques for one control period; `blend` is the previous step's gamma."""
@@ -81,7 +48,7 @@ class Controller:
         terms = collect(self.model, state, self.settings, rates, torques, blend, candidates)
         iterations = 0
         reasons: list[str] = []
-        for form, solver in self._chain:
+        for form, solver in self.chain:
             outcome = self._two_passes(form, solver, terms, state)
             iterations += outcome.iterations
             if not outcome.reason:
@@ -95,7 +62,7 @@ class Controller:
         answer = outcome.answer
         force[used] = np.einsum("mij,mi->mj", state.contacts.frame[used], answer.force)
         failures = len(reasons)
-        all_failed = failures == len(self._chain)
+        all_failed = failures == len(self.chain)
         return Decision(
             torque=np.clip(answer.torque, -terms.torque_limit, terms.torque_limit),
             blend=min(max(answer.blend, 0.0), 1.0),

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.control.supervisor import SupervisorName
+from rotctl.control.supervisor import SupervisorName, Thresholds
 from rotctl.mechanics.excursion import ExcursionName
 from rotctl.settings import STRICT, NonNegative, NonNegativeVector, Positive
 
@@ -45,15 +45,6 @@ class Gains:
     angular_damping: NonNegativeVector
     pose_stiffness: NonNegative
     pose_damping: NonNegative
-
-
-@validated(frozen=True, config=STRICT)
-class Thresholds:
-    """What a contact must show to be used: force [N], torque [N m], separation speed [m/s]."""
-
-    force: NonNegative
-    torque: NonNegative
-    separation: NonNegative
 
 
 @validated(frozen=True, config=STRICT)

@@ -7,23 +7,26 @@ always keeps all of them.
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic.dataclasses import dataclass as validated
 
 from rotctl.rotations import Array
+from rotctl.settings import STRICT, NonNegative
 
 SupervisorName = Literal["as_written", "modified", "none"]
 Mask = NDArray[np.bool_]
 
 
-class Limits(Protocol):
-    """The thresholds a rule compares with: [N], [N m], [m/s]."""
+@validated(frozen=True, config=STRICT)
+class Thresholds:
+    """What a contact must show to be used: force [N], torque [N m], separation speed [m/s]."""
 
-    force: float
-    torque: float
-    separation: float
+    force: NonNegative
+    torque: NonNegative
+    separation: NonNegative
 
 
 @dataclass(frozen=True)
@@ -41,17 +44,17 @@ class Evidence:
     separation: Array
 
 
-def as_written(evidence: Evidence, limits: Limits) -> Mask:
+def as_written(evidence: Evidence, limits: Thresholds) -> Mask:
     """Keep a contact whose force or whose torque about the centre of mass is large enough."""
     return (evidence.force > limits.force) | (evidence.torque > limits.torque)
 
 
-def modified(evidence: Evidence, limits: Limits) -> Mask:
+def modified(evidence: Evidence, limits: Thresholds) -> Mask:
     """As written, and keep every contact that is not already leaving the ground."""
     return as_written(evidence, limits) | (evidence.separation < limits.separation)
 
 
-RULES: dict[str, Callable[[Evidence, Limits], Mask]] = {
+RULES: dict[str, Callable[[Evidence, Thresholds], Mask]] = {
     "as_written": as_written,
     "modified": modified,
 }

@@ -70,12 +70,12 @@ class Terms:
 
     @cached_property
     def momentum_square(self) -> Array:
-        """maps' W maps (3m, 3m)."""
+        """Maps' W maps (3m, 3m)."""
         return np.asarray((self.maps.T * self.momentum_weights) @ self.maps)
 
     @cached_property
     def momentum_pull(self) -> Array:
-        """maps' W (wanted rates - gravity's) (3m,)."""
+        """Maps' W (wanted rates - gravity's) (3m,)."""
         return np.asarray(self.maps.T @ (self.momentum_weights * (self.rates - self.weight)))
 
     @property

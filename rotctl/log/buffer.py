@@ -9,13 +9,14 @@ groups cannot collide::
 """
 
 from dataclasses import dataclass, field, make_dataclass
+from math import prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
-from rotctl.log.schema import EVENT_BYTES, SCHEMA, DatasetSpec
+from rotctl.log.schema import EVENT_BYTES, MAX_TOTAL_BYTES, SCHEMA, DatasetSpec
 
 _ALLOCATED = {
     name: spec for name, spec in SCHEMA.items() if spec.shape and "events" not in spec.shape
@@ -52,12 +53,22 @@ class TrajectoryBuffer:
             capacity: recorded contacts a step.
 
         Raises:
-            InputError: a size is negative.
+            InputError: a size is negative, or the log would be larger than a reader accepts.
         """
         sizes = {"steps": steps, "nq": nq, "nv": nv, "nu": nu, "capacity": capacity}
         for name, size in sizes.items():
             if size < 0:
                 raise InputError(f"{name} must be >= 0, got {size}")
+        total = sum(
+            np.dtype(spec.dtype).itemsize * prod(_shape(spec, sizes))
+            for spec in _ALLOCATED.values()
+        )
+        if total > MAX_TOTAL_BYTES:
+            raise InputError(
+                f"{steps} steps with room for {capacity} contacts need {total / 2**30:.1f} GiB, "
+                f"a log holds {MAX_TOTAL_BYTES / 2**30:g} GiB: choose a shorter run or a smaller "
+                "capacity"
+            )
         return _from_arrays({name: _allocate(spec, sizes) for name, spec in _ALLOCATED.items()}, [])
 
     @property
@@ -107,8 +118,11 @@ def _array(buffer: TrajectoryBuffer, name: str) -> NDArray[Any]:
 
 
 def _allocate(spec: DatasetSpec, sizes: dict[str, int]) -> NDArray[Any]:
-    shape = [dim if isinstance(dim, int) else sizes[dim] for dim in spec.shape]
-    return np.full(shape, spec.fill, dtype=spec.dtype)
+    return np.full(_shape(spec, sizes), spec.fill, dtype=spec.dtype)
+
+
+def _shape(spec: DatasetSpec, sizes: dict[str, int]) -> list[int]:
+    return [dim if isinstance(dim, int) else sizes[dim] for dim in spec.shape]
 
 
 def _from_arrays(

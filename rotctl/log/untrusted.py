@@ -30,7 +30,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
     Raises:
         LogError: ``<path>: <reason>``.
     """
-    if not path.is_file():
+    if not os.path.isfile(path):  # unlike Path.is_file, never raises: too long a name is no file
         raise LogError(f"{path}: no such file")
     if not os.access(path, os.R_OK):
         raise LogError(f"{path}: permission denied")

@@ -11,11 +11,24 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character, add_character
-from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
 from rotctl.mechanics.terrain import Terrain, add_terrain
 from rotctl.rotations import Array
+from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
 
 ROOT_DOFS = 6
+PLAIN_OPTIONS = (
+    "iterations",
+    "tolerance",
+    "ls_iterations",
+    "ls_tolerance",
+    "noslip_iterations",
+    "noslip_tolerance",
+    "ccd_iterations",
+    "ccd_tolerance",
+    "impratio",
+    "density",
+    "viscosity",
+)
 Count = Annotated[int, Field(ge=0, le=10_000)]
 
 
@@ -136,10 +149,7 @@ def _set_options(spec: mujoco.MjSpec, physics: Physics, control_rate: float) -> 
     option.cone = getattr(mujoco.mjtCone, f"mjCONE_{physics.cone.upper()}")
     option.solver = getattr(mujoco.mjtSolver, f"mjSOL_{physics.solver.upper()}")
     option.jacobian = getattr(mujoco.mjtJacobian, f"mjJAC_{physics.jacobian.upper()}")
-    for name in (
-        "iterations tolerance ls_iterations ls_tolerance noslip_iterations noslip_tolerance "
-        "ccd_iterations ccd_tolerance impratio density viscosity"
-    ).split():
+    for name in PLAIN_OPTIONS:
         setattr(option, name, getattr(physics, name))
     option.wind = [0.0, 0.0, 0.0]
     option.magnetic = [0.0, 0.0, 0.0]

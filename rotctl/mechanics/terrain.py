@@ -7,8 +7,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.character import CHARACTER_CONTACT, GROUND_CONTACT
-from rotctl.settings import STRICT, Positive
 from rotctl.rotations import Array
+from rotctl.settings import STRICT, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -66,7 +66,7 @@ def simulate(
     start: Start,
     duration: float,
     capacity: int,
-    progress: Callable[[], None] = lambda: None,
+    progress: Callable[[], object] = lambda: None,
 ) -> Outcome:
     """Run one simulation.
 
@@ -106,12 +106,12 @@ def simulate(
             last_fallback = decision.reasons[-1]
             buffer.add_event(state.time, last_fallback)
         realised = stepper.advance(data, decision.torque, state.contacts)
-        _record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
         progress()
     return Outcome(buffer, stepper.complaint(data), last_fallback)
 
 
-def _record(
+def record(
     buffer: TrajectoryBuffer,
     i: int,
     state: State,
@@ -120,6 +120,7 @@ def _record(
     decision: Decision,
     realised: Array,
 ) -> None:
+    """Write row `i` of the log; `realised` (m, 3) are the forces the physics gave [N]."""
     trajectory, momentum = buffer.trajectory, state.momentum
     trajectory.time[i] = state.time
     trajectory.qpos[i] = state.position

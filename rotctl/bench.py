@@ -1,0 +1,135 @@
+"""Where the time of a control step goes, on the states of a real forward roll.
+
+Times on a shared machine wander; ratios taken in one run, medians over repeats, do not.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from statistics import median
+
+import mujoco
+
+from rotctl.config import Config, load
+from rotctl.log import TrajectoryBuffer
+from rotctl.mechanics.state import read
+from rotctl.qp import Problem, Solution, Solver
+from rotctl.rotations import Array
+from rotctl.scenario import Scenario, build
+from rotctl.simulation.loop import INITIAL_BLEND, record
+from rotctl.simulation.start import place
+
+SECONDS = 10.0  # simulated time of one repeat
+STAGES = ("physics", "kinematics", "assembly", "solve", "log")
+EXPLAINED = {
+    "physics": "MuJoCo's steps",
+    "kinematics": "reading state, contacts, momentum, excursion",
+    "assembly": "targets, pose torques, matrices of both passes",
+    "solve": "the quadratic programs of both passes",
+    "log": "one row of every dataset",
+}
+
+
+@dataclass
+class Split:
+    """Seconds spent in each stage over one simulated roll."""
+
+    steps: int = 0
+    seconds: dict[str, float] = field(default_factory=lambda: dict.fromkeys(STAGES, 0.0))
+
+    @property
+    def control(self) -> float:
+        """All that is not physics or log [s]."""
+        return sum(self.seconds[stage] for stage in ("kinematics", "assembly", "solve"))
+
+    @property
+    def total(self) -> float:
+        """Everything [s]."""
+        return sum(self.seconds.values())
+
+
+class TimedSolver:
+    """A solver that adds up the time it takes."""
+
+    def __init__(self, solver: Solver) -> None:
+        """Wrap `solver`."""
+        self.name, self.shape = solver.name, solver.shape
+        self.seconds = 0.0
+        self._solver = solver
+
+    def solve(self, problem: Problem, start: Array | None) -> Solution:
+        """Solve and note the time."""
+        begin = time.perf_counter()
+        solution = self._solver.solve(problem, start)
+        self.seconds += time.perf_counter() - begin
+        return solution
+
+
+def bench(repeats: int) -> str:
+    """Measure and describe; medians over `repeats` rolls of each setting."""
+    columns = {n: _measure(load([f"physics.substeps={n}"]), repeats) for n in (1, 4)}
+    title = f"forward_roll_1, {SECONDS:g} s simulated, median of {repeats} rolls"
+    head = "".join(f"{n} substep{'' if n == 1 else 's':1}".rjust(12) for n in columns)
+    lines = [title, "", f"{'microseconds a control step':58}{head}"]
+
+    def row(label: str, form: str, value: Callable[[Split], float]) -> str:
+        cells = (format(median(map(value, splits)), form) for splits in columns.values())
+        return f"{label:58}" + "".join(cell.rjust(12) for cell in cells)
+
+    for stage in STAGES:
+        label = f"{stage}: {EXPLAINED[stage]}"
+        lines.append(row(label, ".0f", partial(_per_step, stage)))
+    lines += [
+        "",
+        row("control / physics", ".2f", lambda split: split.control / split.seconds["physics"]),
+        row("real-time factor", ".1f", lambda split: SECONDS / split.total),
+        row("  of physics alone", ".1f", lambda split: SECONDS / split.seconds["physics"]),
+    ]
+    return "\n".join(lines)
+
+
+def _per_step(stage: str, split: Split) -> float:
+    return 1e6 * split.seconds[stage] / split.steps
+
+
+def _measure(config: Config, repeats: int) -> list[Split]:
+    return [roll(build(config)) for _ in range(repeats)]
+
+
+def roll(scenario: Scenario) -> Split:
+    """Simulate `SECONDS` with a clock between the stages; the same steps as the real loop."""
+    model, behaviour, stepper = scenario.model, scenario.behaviour, scenario.stepper
+    controller = scenario.controller
+    clock = TimedSolver(controller.chain[0][1])
+    controller.chain[0] = (controller.chain[0][0], clock)
+    data = mujoco.MjData(model.mj)
+    place(model, data, scenario.start, behaviour.pose(scenario.start.pitch))
+    steps = round(SECONDS * controller.settings.rate)
+    buffer = TrajectoryBuffer.allocate(steps, model.mj.nq, model.mj.nv, model.mj.nu, 64)
+    now = behaviour.begin(scenario.start.pitch)
+    blend = INITIAL_BLEND
+    split = Split(steps)
+    seconds = split.seconds
+    for i in range(steps):
+        t0 = time.perf_counter()
+        stepper.evaluate(data)
+        t1 = time.perf_counter()
+        state = read(model, data)
+        now = behaviour.advance(now, state)
+        t2 = time.perf_counter()
+        before = clock.seconds
+        decision = controller.decide(state, behaviour.desired(state, now), blend)
+        t3 = time.perf_counter()
+        blend = decision.blend
+        realised = stepper.advance(data, decision.torque, state.contacts)
+        t4 = time.perf_counter()
+        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        t5 = time.perf_counter()
+        solve = clock.seconds - before
+        seconds["physics"] += (t1 - t0) + (t4 - t3)
+        seconds["kinematics"] += t2 - t1
+        seconds["assembly"] += t3 - t2 - solve
+        seconds["solve"] += solve
+        seconds["log"] += t5 - t4
+    return split

@@ -1,0 +1,282 @@
+"""The compiled control step: `compiled.c` on numpy's memory, through ctypes.
+
+Serves the condensed form with boxqp, which is the default. The library is built when rotctl
+is installed, if there is a C compiler; it carries no Python of its own, and finds MuJoCo's
+functions in the library that the mujoco package has loaded.
+"""
+
+import ctypes
+from functools import lru_cache
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from rotctl.control.condensed import LIMIT_SLACK
+from rotctl.control.decision import Decision
+from rotctl.control.settings import ControllerSettings
+from rotctl.control.targets import Desired
+from rotctl.errors import RotctlError
+from rotctl.mechanics.contacts import Contacts
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.momentum import Momentum
+from rotctl.mechanics.state import State
+from rotctl.qp.boxqp import DIAGONAL, TOLERANCE
+from rotctl.rotations import Array
+
+LIBRARY = Path(__file__).with_name("_compiled.so")
+CAPACITY = 64  # CONTACTS in compiled.c
+LARGEST_TRUNK = 16
+SUPERVISORS = {"as_written": 0, "modified": 1, "none": 2}
+FAILED = -1
+WEIGHTS = (
+    "linear_momentum",
+    "angular_momentum",
+    "out_of_plane",
+    "pose",
+    "contact_velocity",
+    "contact_force",
+    "blend",
+)
+AXIS_GAINS = ("linear_stiffness", "linear_damping", "angular_stiffness", "angular_damping")
+
+_double, _int, _pointer = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
+
+
+class _Functions(ctypes.Structure):
+    _fields_ = [(name, _pointer) for name in ("mulM", "solveM", "factorM", "boxQP")]
+
+
+class _Constants(ctypes.Structure):
+    _fields_ = [
+        *((name, _double) for name in ("period", "friction", "diagonal", "tolerance", "slack")),
+        *((name, _double) for name in WEIGHTS),
+        *((name, _double * 3) for name in AXIS_GAINS),
+        ("pose_stiffness", _double),
+        ("pose_damping", _double),
+        ("threshold_force", _double),
+        ("threshold_torque", _double),
+        ("threshold_separation", _double),
+        ("mass", _double),
+        ("gravity", _double * 3),
+        ("supervisor", _int),
+        ("trunk_count", _int),
+        ("trunk", _int * LARGEST_TRUNK),
+        ("trunk_weight", _double * LARGEST_TRUNK),
+        ("torque_limit", _pointer),
+        ("armature", _pointer),
+        ("excluded", _pointer),
+    ]
+
+
+class _Reading(ctypes.Structure):
+    _fields_ = [
+        *(
+            (name, _double * 3)
+            for name in ("com", "com_velocity", "linear", "angular")
+        ),
+        ("inertia", _double * 9),
+        ("angular_velocity", _double * 3),
+        ("rotation", _double * 9),
+        ("offset", _double * 3),
+        ("lateral_axis", _double * 3),
+        ("position", _double * (3 * CAPACITY)),
+        ("frame", _double * (9 * CAPACITY)),
+        ("friction", _double * (2 * CAPACITY)),
+        ("body", _int * CAPACITY),
+        ("row", ctypes.c_longlong * CAPACITY),
+        ("count", _int),
+    ]
+
+
+class _Wishes(ctypes.Structure):
+    _fields_ = [
+        *(
+            (name, _double * 3)
+            for name in ("com", "com_velocity", "excursion_error", "angular_velocity")
+        ),
+        ("blend", _double),
+        ("pose_a", _pointer),
+        ("pose_b", _pointer),
+    ]
+
+
+class _Answer(ctypes.Structure):
+    _fields_ = [
+        ("force", _double * (3 * CAPACITY)),
+        ("rates_wanted", _double * 6),
+        ("rates_predicted", _double * 6),
+        ("blend", _double),
+        ("residual", _double),
+        ("torque", _pointer),
+        ("used", ctypes.c_ubyte * CAPACITY),
+    ]
+
+
+@lru_cache(maxsize=1)
+def library() -> ctypes.CDLL | None:
+    """The built library; None where there is none, or it was built for another MuJoCo."""
+    try:
+        found = ctypes.CDLL(str(LIBRARY))
+    except OSError:
+        return None
+    found.rotctl_new.restype = _pointer
+    found.rotctl_new.argtypes = [_pointer] * 4
+    found.rotctl_free.argtypes = [_pointer]
+    found.rotctl_free.restype = None
+    found.rotctl_read.argtypes = [_pointer] * 3
+    found.rotctl_decide.argtypes = [_pointer] * 5
+    return found if found.rotctl_mujoco_version() == mujoco.mj_version() else None
+
+
+def serves(settings: ControllerSettings, model: Model) -> bool:
+    """Whether these settings are ones that the compiled step knows."""
+    return (
+        settings.solver == "boxqp"
+        and settings.form == "condensed"
+        and settings.weights.pose > 0
+        and model.mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
+        and len(model.trunk) <= LARGEST_TRUNK
+    )
+
+
+class CompiledStep:
+    """Reads the state and decides torques; what it returns lives until the next call."""
+
+    def __init__(self, model: Model, settings: ControllerSettings) -> None:
+        """Hand the run's constants over; `library()` must be there."""
+        found = library()
+        if found is None:
+            raise RotctlError("the compiled control step is not built")
+        self._library = found
+        self._scratch = mujoco.MjData(model.mj)
+        self._kept = (model, model.torque_limit, model.armature, model.excluded)
+        self._reading, self._wishes, self._answer = _Reading(), _Wishes(), _Answer()
+        self._torque = np.zeros(model.mj.nu)
+        self._answer.torque = self._torque.ctypes.data
+        self._self = found.rotctl_new(
+            model.mj._address,
+            self._scratch._address,
+            ctypes.addressof(_functions()),
+            ctypes.addressof(_constants(model, settings)),
+        )
+        if not self._self:
+            raise MemoryError("no memory for the compiled control step")
+        self._pointers = [
+            ctypes.addressof(part) for part in (self._reading, self._wishes, self._answer)
+        ]
+        reading = {name: _view(self._reading, name) for name, _ in _Reading._fields_[:-1]}
+        self._momentum = Momentum(
+            com=reading["com"],
+            com_velocity=reading["com_velocity"],
+            linear=reading["linear"],
+            angular=reading["angular"],
+            inertia=reading["inertia"].reshape(3, 3),
+            angular_velocity=reading["angular_velocity"],
+            root_rotation=reading["rotation"].reshape(3, 3),
+            root_offset=reading["offset"],
+        )
+        self._lateral_axis = reading["lateral_axis"]
+        self._position = reading["position"].reshape(CAPACITY, 3)
+        self._frame = reading["frame"].reshape(CAPACITY, 3, 3)
+        self._body, self._row = reading["body"], reading["row"]
+        self._friction = reading["friction"].reshape(CAPACITY, 2)
+        wishes = ("com", "com_velocity", "excursion_error", "angular_velocity")
+        self._wished = [(_view(self._wishes, name), name) for name in wishes]
+        self._force = _view(self._answer, "force").reshape(CAPACITY, 3)
+        self._used = _view(self._answer, "used").view(bool)
+        self._rates_wanted = _view(self._answer, "rates_wanted")
+        self._rates_predicted = _view(self._answer, "rates_predicted")
+
+    def __del__(self) -> None:
+        """Give the memory back."""
+        if getattr(self, "_self", None):
+            self._library.rotctl_free(self._self)
+
+    def read(self, data: mujoco.MjData) -> State | None:
+        """The state, as `rotctl.mechanics.state.read` reads it; None if there is no room."""
+        m = self._library.rotctl_read(self._self, data._address, self._pointers[0])
+        if m == FAILED:
+            return None
+        return State(
+            time=data.time,
+            position=data.qpos,
+            velocity=data.qvel,
+            momentum=self._momentum,
+            contacts=Contacts(
+                body=self._body[:m],
+                position=self._position[:m],
+                frame=self._frame[:m],
+                row=self._row[:m],
+                friction=self._friction[:m],
+            ),
+            lateral_axis=self._lateral_axis,
+            data=data,
+        )
+
+    def decide(self, state: State, desired: Desired, blend: float) -> Decision | None:
+        """Torques for the state read last; None where the reference has to take over."""
+        for view, name in self._wished:
+            view[:] = getattr(desired, name)
+        wishes, answer = self._wishes, self._answer
+        wishes.blend = blend
+        wishes.pose_a = desired.pose_a.ctypes.data
+        wishes.pose_b = desired.pose_b.ctypes.data
+        m = self._library.rotctl_decide(self._self, state.data._address, *self._pointers)
+        if m == FAILED:
+            return None
+        return Decision(
+            torque=self._torque,
+            blend=answer.blend,
+            used=self._used[:m],
+            force=self._force[:m],
+            rates_wanted=self._rates_wanted,
+            rates_predicted=self._rates_predicted,
+            status=0,
+            fallback=0,
+            iterations=0,
+            residual=answer.residual,
+            reasons=(),
+        )
+
+
+def _view(structure: ctypes.Structure, name: str) -> Array:
+    return np.ctypeslib.as_array(getattr(structure, name))
+
+
+@lru_cache(maxsize=1)
+def _functions() -> _Functions:
+    """Addresses of MuJoCo's functions, in the library its Python package has loaded."""
+    folder = Path(mujoco.__file__).parent
+    loaded = ctypes.CDLL(str(next(folder.glob("libmujoco.*"))))
+    names = ("mj_mulM", "mj_solveM", "mj_factorM", "mju_boxQP")
+    return _Functions(*(ctypes.cast(getattr(loaded, name), _pointer) for name in names))
+
+
+def _constants(model: Model, settings: ControllerSettings) -> _Constants:
+    constants = _Constants(
+        period=1.0 / settings.rate,
+        friction=settings.friction,
+        diagonal=DIAGONAL,
+        tolerance=TOLERANCE,
+        slack=LIMIT_SLACK,
+        pose_stiffness=settings.gains.pose_stiffness,
+        pose_damping=settings.gains.pose_damping,
+        threshold_force=settings.thresholds.force,
+        threshold_torque=settings.thresholds.torque,
+        threshold_separation=settings.thresholds.separation,
+        mass=model.mass,
+        supervisor=SUPERVISORS[settings.supervisor],
+        trunk_count=len(model.trunk),
+        torque_limit=model.torque_limit.ctypes.data,
+        armature=model.armature.ctypes.data,
+        excluded=model.excluded.ctypes.data,
+    )
+    for name in WEIGHTS:
+        setattr(constants, name, getattr(settings.weights, name))
+    for name in AXIS_GAINS:
+        getattr(constants, name)[:] = getattr(settings.gains, name)
+    constants.gravity[:] = model.gravity
+    for i, (body, weight) in enumerate(zip(model.trunk, model.trunk_weights, strict=True)):
+        constants.trunk[i], constants.trunk_weight[i] = int(body), float(weight)
+    return constants

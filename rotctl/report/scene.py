@@ -1,0 +1,226 @@
+"""A character on its ground, seen from the side: qpos to pictures, and world points to pixels."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import radians, tan
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.report import gl
+from rotctl.rotations import Array
+
+Pixels = NDArray[np.uint8]
+
+ELEVATION = radians(-7.0)  # the camera looks down a little, so that the ground has depth
+FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
+MARGIN = 1.25  # of the picture around the character
+LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked character from filling the picture
+GROUND_LINE = 0.9  # how far below the middle the ground is, in half heights
+LEFT_SHADE = 0.62  # left limbs are darker, so that turns can be told apart
+SKY_TOP = (0.655, 0.780, 0.900)
+SKY_LOW = (0.945, 0.962, 0.975)
+SUN = (0.25, 0.45, -1.0)  # direction of its light
+_FAR = 60.0  # [m] where the ground has faded into the sky
+_FOREGROUND = (0, 1)  # geom groups: character, world
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera that looks along +y, so that +x is to the right.
+
+    Attributes:
+        target: (3,) the point in the middle of the picture [m].
+        distance: from there [m].
+        width, height: of the picture in pixels.
+    """
+
+    target: Array
+    distance: float
+    width: int
+    height: int
+
+    def pixels(self, points: Array) -> Array:
+        """Where world points (..., 3) are in the picture (..., 2): x to the right, y down."""
+        forward = np.array([0.0, np.cos(ELEVATION), np.sin(ELEVATION)])
+        up = np.array([0.0, -np.sin(ELEVATION), np.cos(ELEVATION)])
+        offset = points - self.target
+        scale = 0.5 * self.height / tan(0.5 * FIELD_OF_VIEW) / (offset @ forward + self.distance)
+        return np.stack(
+            [
+                0.5 * self.width + scale * offset[..., 0],
+                0.5 * self.height - scale * (offset @ up),
+            ],
+            axis=-1,
+        )
+
+
+class Scene:
+    """Draws a model in given states; see `opened`."""
+
+    def __init__(self, model: mujoco.MjModel, width: int, height: int) -> None:
+        self.model = model
+        self.width, self.height = width, height
+        self._data = mujoco.MjData(model)
+        self._limbs = model.geom_bodyid > 0
+        self._distance = 0.0
+        self._centre = 0.0  # [m] height of the camera's target above the ground
+        _light(model, width, height)
+        _shade_left(model)
+        model.geom_group[:] = np.where(self._limbs, *_FOREGROUND)
+        self._view = mujoco.MjvScene(model, maxgeom=model.ngeom + 16)
+        self._view.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
+        self._view.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = True
+        self._view.flags[mujoco.mjtRndFlag.mjRND_FOG] = True
+        self._view.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
+        self._option = mujoco.MjvOption()
+        self._option.sitegroup[:] = 0
+        self._sky = _gradient(width, height)
+        self._drawing: Any = None
+
+    def fit(self, states: Array) -> None:
+        """Choose one camera distance with which the character fits in all states (n, nq)."""
+        wide, low, high = 0.0, 0.0, 0.0
+        for state in states:
+            self._pose(state)
+            left, right, bottom, top = self._outline()
+            ground = self.ground(0.5 * (left + right), self._data.subtree_com[1, 1])
+            wide = max(wide, 0.5 * (right - left))
+            low, high = min(low, bottom - ground), max(high, top - ground)
+        half = max(0.5 * (high - low), wide * self.height / self.width, LEAST_HALF_HEIGHT)
+        self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)
+        self._centre = low + GROUND_LINE * half
+
+    def draw(self, state: Array) -> tuple[Pixels, Camera]:
+        """A picture (height, width, 3) of the character in a state (nq,), and its camera."""
+        self._pose(state)
+        target = self._target()
+        camera = mujoco.MjvCamera()
+        camera.lookat, camera.distance = target, self._distance
+        camera.azimuth, camera.elevation = 90.0, np.degrees(ELEVATION)
+        everything = mujoco.mjtCatBit.mjCAT_ALL
+        mujoco.mjv_updateScene(
+            self.model, self._data, self._option, None, camera, everything, self._view
+        )
+        self._add_sun(target)
+        frame = mujoco.MjrRect(0, 0, self.width, self.height)
+        mujoco.mjr_render(frame, self._view, self._drawing)
+        picture = np.empty((self.height, self.width, 3), dtype=np.uint8)
+        depth = np.empty((self.height, self.width), dtype=np.float32)
+        mujoco.mjr_readPixels(picture, depth, frame, self._drawing)
+        empty = depth[::-1] >= 1.0
+        return (
+            np.where(empty[..., None], self._sky, picture[::-1]),
+            Camera(target, self._distance, self.width, self.height),
+        )
+
+    @property
+    def weight(self) -> float:
+        """Of the character [N]."""
+        return float(self.model.body_subtreemass[1] * np.linalg.norm(self.model.opt.gravity))
+
+    def ground(self, x: float, y: float) -> float:
+        """Height of the ground at world (x, y) [m], in the state drawn last; 0 beside it."""
+        world_only = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
+        above = np.array([x, y, 1000.0])
+        hit = np.zeros(1, dtype=np.int32)
+        depth = mujoco.mj_ray(
+            self.model, self._data, above, np.array([0.0, 0.0, -1.0]), world_only, 1, -1, hit
+        )
+        return float(above[2] - depth) if depth >= 0 else 0.0
+
+    def _pose(self, state: Array) -> None:
+        self._data.qpos[:] = state
+        mujoco.mj_kinematics(self.model, self._data)
+        mujoco.mj_comPos(self.model, self._data)
+        mujoco.mj_camlight(self.model, self._data)
+
+    def _outline(self) -> tuple[float, float, float, float]:
+        """Left, right, bottom and top of the character [m]."""
+        size, axis = self.model.geom_size, self._data.geom_xmat[:, 2::3]
+        capsule = self.model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
+        reach = np.where(
+            capsule[:, None],
+            size[:, :1] + size[:, 1:2] * np.abs(axis),
+            self.model.geom_rbound[:, None],
+        )[self._limbs]
+        low = (self._data.geom_xpos[self._limbs] - reach).min(axis=0)
+        high = (self._data.geom_xpos[self._limbs] + reach).max(axis=0)
+        return float(low[0]), float(high[0]), float(low[2]), float(high[2])
+
+    def _target(self) -> Array:
+        """Above the ground, in the middle of the character; its height does not follow."""
+        left, right, _, _ = self._outline()
+        x, y = 0.5 * (left + right), self._data.subtree_com[1, 1]
+        return np.array([x, y, self.ground(x, y) + self._centre])
+
+    def _add_sun(self, target: Array) -> None:
+        direction = np.array(SUN) / np.linalg.norm(SUN)
+        self._view.nlight = 2  # the first is the headlight; the model's own are not for pictures
+        sun = self._view.lights[1]
+        sun.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+        sun.headlight, sun.castshadow, sun.texid = 0, 1, -1
+        sun.pos, sun.dir = target - 5.0 * direction, direction
+        sun.ambient, sun.diffuse, sun.specular = [0.0] * 3, [0.62, 0.60, 0.56], [0.12] * 3
+        sun.attenuation = [1.0, 0.0, 0.0]
+
+
+@contextmanager
+def opened(model: mujoco.MjModel, backend: str, width: int, height: int) -> Iterator[Scene]:
+    """A scene with an OpenGL context, for as long as it is open.
+
+    Args:
+        model: its visual settings are changed.
+        backend: from `gl.backend`.
+        width: of the pictures in pixels.
+        height: of the pictures in pixels.
+    """
+    scene = Scene(model, width, height)
+    with gl.context(backend, width, height):
+        drawing = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100)
+        try:
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN, drawing)
+            scene._drawing = drawing
+            yield scene
+        finally:
+            drawing.free()
+
+
+def _light(model: mujoco.MjModel, width: int, height: int) -> None:
+    """Set every visual option that matters here: a log's model has its own, or a stranger's."""
+    visual = model.vis
+    visual.global_.offwidth, visual.global_.offheight = width, height
+    visual.global_.fovy = np.degrees(FIELD_OF_VIEW)
+    visual.global_.orthographic = 0
+    quality = visual.quality
+    quality.offsamples = 0  # we draw larger and scale down: much faster in software
+    quality.shadowsize = 2048
+    quality.numslices, quality.numstacks, quality.numquads = 32, 16, 4
+    model.stat.extent = 1.0  # the lengths below are in metres
+    visual.map.znear, visual.map.zfar = 0.5, 4 * _FAR
+    visual.map.fogstart, visual.map.fogend = 5.0, 0.5 * _FAR
+    visual.map.shadowclip, visual.map.shadowscale = 3.0, 0.8
+    visual.rgba.fog = [*SKY_LOW, 1.0]
+    visual.headlight.active = 1
+    visual.headlight.ambient = [0.42, 0.43, 0.45]
+    visual.headlight.diffuse = [0.22, 0.22, 0.22]
+    visual.headlight.specular = [0.0, 0.0, 0.0]
+
+
+def _shade_left(model: mujoco.MjModel) -> None:
+    names = {model.body(i).name for i in range(model.nbody)}
+    for i in range(model.ngeom):
+        body = model.body(model.geom_bodyid[i]).name
+        if body.endswith("_l") and body.removesuffix("_l") + "_r" in names:
+            model.geom_rgba[i, :3] *= LEFT_SHADE
+
+
+def _gradient(width: int, height: int) -> Pixels:
+    """The sky: blue above, as pale at the horizon as the ground fades to."""
+    horizon = 0.5 - 0.5 * tan(-ELEVATION) / tan(0.5 * FIELD_OF_VIEW)
+    down = np.clip(np.linspace(0.0, 1.0 / horizon, height), 0.0, 1.0)[:, None, None]
+    sky = (1.0 - down) * np.array(SKY_TOP) + down * np.array(SKY_LOW)
+    return np.broadcast_to(np.uint8(np.round(255.0 * sky)), (height, width, 3))

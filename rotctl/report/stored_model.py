@@ -1,0 +1,127 @@
+"""The model in a log, which may come from a stranger, to a MuJoCo model that is safe to draw."""
+
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+from rotctl.errors import LogError
+from rotctl.log import RunLog
+from rotctl.log.schema import MODEL_PATH
+
+if TYPE_CHECKING:
+    import mujoco
+
+# What rotctl writes, and no more. Everything that reads a file (include, mesh, skin), runs
+# foreign code (plugin, extension), multiplies itself (replicate, composite, flexcomp) or
+# reserves memory (size) is left out.
+TAGS = frozenset(
+    [
+        "mujoco",
+        "compiler",
+        "option",
+        "flag",
+        "visual",
+        "global",
+        "headlight",
+        "map",
+        "quality",
+        "rgba",
+        "scale",
+        "statistic",
+        "default",
+        "asset",
+        "texture",
+        "material",
+        "layer",
+        "hfield",
+        "worldbody",
+        "body",
+        "inertial",
+        "joint",
+        "freejoint",
+        "geom",
+        "site",
+        "light",
+        "camera",
+        "contact",
+        "pair",
+        "exclude",
+        "actuator",
+        "general",
+        "motor",
+    ]
+)
+_FILES = ("file", "meshdir", "texturedir", "assetdir", "plugin")
+_SIZES = ("width", "height", "nrow", "ncol")  # of textures and height fields
+MAX_SIZE = 1024
+MAX_ELEMENTS = 20_000
+MAX_DEPTH = 100
+
+
+def load(log: RunLog) -> "mujoco.MjModel":
+    """Compile the model of a log.
+
+    Raises:
+        LogError: the model names files or anything else that a log has no use for, does not
+            compile, or does not fit the trajectory.
+    """
+    import mujoco
+
+    where = f"{log.path}: {MODEL_PATH}"
+    try:
+        text = checked(log.model_xml)
+        model = mujoco.MjModel.from_xml_string(text)
+    except LogError as error:
+        raise LogError(f"{where} {error}") from None
+    except (ValueError, mujoco.FatalError) as error:
+        reason = " ".join(str(error).split())
+        raise LogError(f"{where} does not compile: {reason:.200}") from None
+    if model.nq != log.sizes["nq"]:
+        raise LogError(f"{where} has nq = {model.nq}, the trajectory {log.sizes['nq']}")
+    if not (model.geom_bodyid > 0).any():
+        raise LogError(f"{where} has nothing that moves")
+    return model
+
+
+def checked(text: str) -> str:
+    """The same MJCF, written anew from what was checked, so that no parser sees more.
+
+    Raises:
+        LogError: see `load`.
+    """
+    if "<!" in text.replace("<!--", ""):
+        raise LogError("has a document type; a log's model needs none")
+    try:
+        root = ElementTree.fromstring(text)
+        _check(root)
+        return ElementTree.tostring(root, encoding="unicode")
+    except (ElementTree.ParseError, ValueError, RecursionError) as error:
+        raise LogError(f"is not XML: {str(error) or 'nested too deeply':.200}") from None
+
+
+def _check(root: ElementTree.Element) -> None:
+    """Walk all elements; no recursion, since the depth is a stranger's choice too."""
+    waiting = [(root, 1)]
+    seen = 0
+    while waiting:
+        element, depth = waiting.pop()
+        seen += 1
+        if seen > MAX_ELEMENTS:
+            raise LogError(f"has more than {MAX_ELEMENTS} elements")
+        if depth > MAX_DEPTH:
+            raise LogError(f"is nested more than {MAX_DEPTH} deep")
+        if element.tag not in TAGS:
+            raise LogError(f"has <{element.tag:.40}>, which a log's model may not have")
+        for name, value in element.attrib.items():
+            if name.startswith(_FILES):
+                raise LogError(
+                    f"has {name:.40}={value!r:.80} in <{element.tag}>; a log's model stands alone"
+                )
+            if name in _SIZES and not (value.isascii() and value.isdigit() and _fits(value)):
+                raise LogError(
+                    f"has {name}={value!r:.40} in <{element.tag}>, valid: 0 to {MAX_SIZE}"
+                )
+        waiting.extend((child, depth + 1) for child in element)
+
+
+def _fits(digits: str) -> bool:
+    return len(digits) <= 5 and int(digits) <= MAX_SIZE

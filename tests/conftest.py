@@ -1,0 +1,168 @@
+"""Shared by the tests: a scenario built once, and control steps recorded from short rolls."""
+
+import copy
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.control import Decision, Desired
+from rotctl.control.pose import PoseTracker
+from rotctl.control.targets import momentum_rates
+from rotctl.control.terms import collect
+from rotctl.mechanics.state import read
+from rotctl.scenario import build
+from rotctl.simulation.loop import simulate
+
+SEEDS = (1, 2)
+SECONDS = 2.0  # each; 240 control steps in all
+RATE = 60.0
+
+
+@dataclass(frozen=True)
+class Step:
+    """One control step of a roll, enough to do it again."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    desired: Desired
+    blend: float
+    decision: Decision
+
+
+class World:
+    """The default scenario with recorded steps, and independent mechanics to compare with."""
+
+    def __init__(self):
+        # Fixed here, so that the tests do not follow the tuning of conf/.
+        self.config = load(
+            [
+                f"duration={SECONDS:g}",
+                "controller.solver=boxqp",
+                "controller.form=condensed",
+                f"controller.rate={RATE:g}",
+                "controller.supervisor=as_written",
+                "physics.substeps=4",
+                "physics.cone=elliptic",
+                "start=tucked",
+            ]
+        )
+        self.scenario = build(self.config)
+        self.model = self.scenario.model
+        self.mj = self.model.mj
+        self.settings = self.config.controller
+        self.steps = [step for seed in SEEDS for step in self._roll(seed)]
+
+    def _roll(self, seed):
+        scenario = build(replace(self.config, seed=seed))
+        controller, steps = scenario.controller, []
+        decide = controller.decide
+
+        def spy(state, desired, blend):
+            decision = decide(state, desired, blend)
+            steps.append(Step(state.position, state.velocity, desired, blend, decision))
+            return decision
+
+        controller.decide = spy
+        simulate(
+            scenario.model,
+            scenario.behaviour,
+            controller,
+            scenario.stepper,
+            scenario.start,
+            SECONDS,
+            64,
+        )
+        return steps
+
+    def data(self, position, velocity, mj=None):
+        """Fresh MuJoCo data in that state, evaluated as the loop does it."""
+        mj = mj or self.mj
+        data = mujoco.MjData(mj)
+        data.qpos[:], data.qvel[:] = position, velocity
+        mujoco.mj_step1(mj, data)
+        return data
+
+    def state(self, step):
+        return read(self.model, self.data(step.position, step.velocity))
+
+    def terms(self, step, settings=None, **weights):
+        """The state of a recorded step and its first pass, with other weights if given."""
+        settings = settings or self.settings
+        settings = replace(settings, weights=replace(settings.weights, **weights))
+        state = self.state(step)
+        rates = momentum_rates(step.desired, state.momentum, self.model.mass, settings.gains)
+        tracker = PoseTracker(self.model, settings.gains, 1.0 / settings.rate)
+        torques = tracker.torques(state, np.array((step.desired.pose_a, step.desired.pose_b)))
+        keep = ~self.model.excluded[state.contacts.body]
+        return state, collect(self.model, state, settings, rates, torques, step.blend, keep)
+
+    def in_the_air(self, seed=0, speed=1.0):
+        """A random posture and velocity, high above the ground: (qpos, qvel)."""
+        rng = np.random.default_rng(seed)
+        position, velocity = np.empty(self.mj.nq), np.empty(self.mj.nv)
+        position[:3] = rng.normal(size=3) + [0.0, 0.0, 50.0]
+        position[3:7] = rng.normal(size=4)
+        position[3:7] /= np.linalg.norm(position[3:7])
+        low, high = self.model.joint_range.T
+        position[7:] = rng.uniform(low + 0.2 * (high - low), high - 0.2 * (high - low))
+        velocity[:] = speed * rng.normal(size=self.mj.nv)
+        return position, velocity
+
+    @staticmethod
+    def body_sums(mj, data):
+        """Newton and Euler: CM, L, H and I_c by adding up the rigid bodies one by one."""
+        mass = mj.body_mass[1:]
+        com = mass @ data.xipos[1:] / mass.sum()
+        linear, angular, inertia = np.zeros(3), np.zeros(3), np.zeros((3, 3))
+        velocity = np.empty(6)
+        for body in range(1, mj.nbody):
+            mujoco.mj_objectVelocity(mj, data, mujoco.mjtObj.mjOBJ_BODY, body, velocity, 0)
+            spin, speed = velocity[:3], velocity[3:]
+            axes = data.ximat[body].reshape(3, 3)
+            own = axes @ np.diag(mj.body_inertia[body]) @ axes.T
+            arm = data.xipos[body] - com
+            linear += mj.body_mass[body] * speed
+            angular += own @ spin + mj.body_mass[body] * np.cross(arm, speed)
+            inertia += own + mj.body_mass[body] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        return com, linear, angular, inertia
+
+    def rates_by_difference(self, position, velocity, acceleration, tiny=1e-5):
+        """d/dt of [L; H] (6,) along an acceleration, by central differences of body sums."""
+        momenta = []
+        for h in (-tiny, tiny):
+            moved = position.copy()
+            change = velocity * h + 0.5 * acceleration * h**2
+            mujoco.mj_integratePos(self.mj, moved, change, 1.0)
+            data = self.data(moved, velocity + h * acceleration)
+            momenta.append(np.concatenate(self.body_sums(self.mj, data)[1:3]))
+        return (momenta[1] - momenta[0]) / (2 * tiny)
+
+    def model_copy(self, **options):
+        """A copy of the MuJoCo model with other options."""
+        mj = copy.copy(self.mj)
+        for name, value in options.items():
+            setattr(mj.opt, name, value)
+        return mj
+
+
+@pytest.fixture(scope="session")
+def world():
+    return World()
+
+
+@pytest.fixture(scope="session")
+def steps(world):
+    """Recorded control steps, at least 200."""
+    assert len(world.steps) >= 200
+    return world.steps
+
+
+@pytest.fixture(scope="session")
+def supported(world, steps):
+    """Recorded steps with at least two contacts the controller may use."""
+    found = [s for s in steps if (~world.model.excluded[world.state(s).contacts.body]).sum() >= 2]
+    assert len(found) >= 50
+    return found

@@ -1,0 +1,252 @@
+"""Overrides to a typed config, or to one line that names the value and what would be valid."""
+
+import copy
+import json
+import math
+from dataclasses import FrozenInstanceError, asdict
+
+import pytest
+import yaml
+
+from rotctl.config import check, load, to_dict, to_yaml
+from rotctl.errors import InputError
+
+GROUPS = "behaviour, character, controller, criteria, physics, start, terrain, seed, duration"
+NOT_READ = (
+    "cannot be read; write key=value, and quote a text with special characters: \"key='a text'\""
+)
+
+
+def complaint(*overrides):
+    with pytest.raises(InputError) as caught:
+        load(list(overrides))
+    assert caught.value.exit_code == 2
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def test_the_defaults_are_those_of_the_issue():
+    config = load([])
+    assert (config.seed, config.duration) == (0, 20.0)
+    assert config.behaviour.name == "forward_roll_1"
+    assert (config.behaviour.angular_velocity, config.behaviour.speed) == (1.3, 1.2)
+    assert (config.controller.solver, config.controller.form) == ("boxqp", "condensed")
+    assert config.controller.rate == 60.0
+    assert config.physics.jacobian == "dense"
+    assert config.start.name == "tucked"
+    assert config.start.pitch == (-0.6, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("override", "path", "value"),
+    [
+        ("seed=3", "seed", 3),
+        ("++seed=3", "seed", 3),
+        ("duration=5", "duration", 5.0),
+        ("duration=1e1", "duration", 10.0),
+        ("start=rest", "start.name", "rest"),
+        ("controller.solver=qpsolvers:daqp", "controller.solver", "qpsolvers:daqp"),
+        ("controller.gains.linear_damping=[1,2,3]", "controller.gains.linear_damping", (1, 2, 3)),
+        ("controller.gains={pose_damping: 7}", "controller.gains.pose_damping", 7.0),
+        ("behaviour.poses.a.knee=[1,2,3]", "behaviour.poses.a.knee", (1, 2, 3)),
+        ("+behaviour.poses.a.hip_z=0.1", "behaviour.poses.a.hip_z", 0.1),
+        ("physics.disable=[]", "physics.disable", ()),
+    ],
+)
+def test_overrides_reach_the_config(override, path, value):
+    found = to_dict(load([override]))
+    for part in path.split("."):
+        found = found[part]
+    assert found == value
+
+
+def test_a_key_that_may_be_missing_can_be_removed():
+    assert "hip_x" in load([]).behaviour.poses.a
+    assert "hip_x" not in load(["~behaviour.poses.a.hip_x"]).behaviour.poses.a
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        # Keys.
+        ("sed=1", f"unknown key 'sed'; valid keys: {GROUPS}"),
+        ("+x=1", f"unknown key 'x'; valid keys: {GROUPS}"),
+        ("++x.y=1", f"unknown key 'x'; valid keys: {GROUPS}"),
+        ("~x", f"unknown key 'x'; valid keys: {GROUPS}"),
+        ("controllr=rolling", f"unknown key 'controllr'; valid keys: {GROUPS}"),
+        ("behaviour@x=forward_roll_1", f"unknown key 'behaviour@x'; valid keys: {GROUPS}"),
+        (
+            "controller.gains.pose_dampin=1",
+            "unknown key 'controller.gains.pose_dampin'; valid keys under controller.gains: "
+            "linear_stiffness, linear_damping, angular_stiffness, angular_damping, "
+            "pose_stiffness, pose_damping",
+        ),
+        (
+            "controller.gains.linear_damping.x=3",
+            "unknown key 'controller.gains.linear_damping.x'; valid keys under "
+            "controller.gains.linear_damping: none, it is a value",
+        ),
+        ("~seed", "seed: missing, it cannot be left out"),
+        ("~physics", "physics: missing, it cannot be left out"),
+        # Choices.
+        ("start=foo", 'start="foo": no such choice; valid: rest, symmetric, tucked'),
+        ("start=", 'start="": no such choice; valid: rest, symmetric, tucked'),
+        ("start=null", "start=null: no such choice; valid: rest, symmetric, tucked"),
+        ("start=[rest]", 'start=["rest"]: no such choice; valid: rest, symmetric, tucked'),
+        ("start=../start/rest", 'start="../start/rest": no such choice; valid: rest, '
+         "symmetric, tucked"),
+        # Values: one of each kind here, more below.
+        ("seed=a", 'seed="a": must be a valid integer'),
+        ("duration=inf", "duration=inf: must be a finite number"),
+        ("physics.substeps=0", "physics.substeps=0: must be greater than or equal to 1"),
+        (
+            "controller.gains.linear_damping=[1,2]",
+            "controller.gains.linear_damping=[1, 2]: must have 3 values",
+        ),
+        ("controller.form=foo", "controller.form=\"foo\": must be 'condensed' or 'literal'"),
+        # Syntax.
+        ("seed", "override 'seed' has no '='; write key=value, such as seed=3"),
+        ("", "override '' has no '='; write key=value, such as seed=3"),
+        ("=1", "override '=1' has no key; write key=value, such as seed=3"),
+        ("séed=1", f"override 'séed=1': {NOT_READ}"),
+        ('seed="a', f"override 'seed=\"a': {NOT_READ}"),
+        ("seed=1\n2", f"override 'seed=1\\n2': {NOT_READ}"),
+        ("seed=\0", f"override 'seed=\\x00': {NOT_READ}"),
+        ("seed=1,2", "override 'seed=1,2': run takes one value for seed; start one run for each"),
+        (
+            "physics=mujoco,x",
+            "override 'physics=mujoco,x': run takes one value for physics; start one run for each",
+        ),
+        (
+            "seed=range(1,3)",
+            "override 'seed=range(1,3)': run takes one value for seed; start one run for each",
+        ),
+        (
+            "behaviour={}",
+            "override 'behaviour={}' changes nothing; give a value, or remove a key with ~key",
+        ),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_line_that_helps(override, message):
+    assert complaint(override) == message
+
+
+@pytest.fixture(scope="module")
+def plain():
+    """The default config as plain data, as Hydra composes it."""
+    return json.loads(json.dumps(to_dict(load([]))))
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        # Choices.
+        ("controller.supervisor", "no", "\"no\": must be 'as_written', 'modified' or 'none'"),
+        ("physics.jacobian", "sparse", "\"sparse\": must be 'dense'"),
+        # Types.
+        ("seed", "", '"": must be a valid integer'),
+        ("seed", 1.5, "1.5: must be a valid integer"),
+        ("seed", True, "true: must be a valid integer"),
+        ("seed", None, "null: must be a valid integer"),
+        ("seed", [1, 2], "[1, 2]: must be a valid integer"),
+        ("duration", "1", '"1": must be a valid number'),
+        ("duration", True, "true: must be a valid number"),
+        ("controller.gains", 3, "3: must be keys with values"),
+        ("controller.solver", 3, "3: must be a valid string"),
+        ("behaviour.poses.a.knee", "x", '"x": must be a valid number'),
+        ("physics.disable", "autoreset", '"autoreset": must be a list, in brackets'),
+        # Numbers.
+        ("seed", -1, "-1: must be greater than or equal to 0"),
+        ("seed", 2**63, f"{2**63}: must be less than {2**63}"),
+        ("duration", 0, "0: must be greater than 0"),
+        ("duration", -1.0, "-1.0: must be greater than 0"),
+        ("duration", -math.inf, "-inf: must be a finite number"),
+        ("duration", math.nan, "nan: must be a finite number"),
+        ("duration", 1e9, "1000000000.0: must be less than or equal to 3600"),
+        ("controller.weights.pose", -1, "-1: must be greater than or equal to 0"),
+        ("terrain.friction", 0, "0: must be greater than 0"),
+        ("controller.rate", math.inf, "inf: must be a finite number"),
+        # Lists.
+        ("physics.gravity", [], "[]: must have 3 values"),
+        ("physics.contact_solref", [1, 2, 3], "[1, 2, 3]: too many values, at most 2"),
+        ("start.pitch", [1, 0], "[1, 0]: the range [1, 0] is empty: low must not exceed high"),
+        ("character.bodies", [], "[]: too few values, at least 1"),
+    ],
+)
+def test_bad_values_are_named_with_what_would_be_valid(plain, key, value, message):
+    data = copy.deepcopy(plain)
+    inner = data
+    *path, last = key.split(".")
+    for part in path:
+        inner = inner[part]
+    inner[last] = value
+    with pytest.raises(InputError) as caught:
+        check(data)
+    assert str(caught.value) == f"{key}={message}"
+
+
+def test_a_bad_value_in_a_list_is_named_by_its_place(plain):
+    data = copy.deepcopy(plain)
+    data["controller"]["gains"]["linear_damping"][2] = math.nan
+    with pytest.raises(InputError) as caught:
+        check(data)
+    assert str(caught.value) == "controller.gains.linear_damping.2=nan: must be a finite number"
+
+
+@pytest.mark.parametrize(
+    "override",
+    ["behaviour._target_=os.system", "+behaviour={_target_: os.system}", "start=${oc.env:HOME}"],
+)
+def test_nothing_in_a_config_is_executed_or_looked_up(override):
+    assert complaint(override) == (
+        f"override {override!r}: interpolations and _target_ are not honoured; give a value"
+    )
+
+
+@pytest.mark.parametrize("override", ["hydra.run.dir=x", "+hydra.x=1", "hydra/launcher=basic"])
+def test_hydra_itself_cannot_be_configured(override):
+    assert complaint(override) == (
+        f"override {override!r}: Hydra's own settings cannot be changed here"
+    )
+
+
+@pytest.mark.parametrize("value", ["1" * 10**7, "x" * 10**7, "[" * 10**6])
+def test_a_huge_override_is_refused_at_once_and_not_repeated(value):
+    message = complaint(f"seed={value}")
+    assert message.startswith(f"override 'seed={value[:50]}")
+    assert message.endswith("...': longer than 10000 characters")
+    assert len(message) < 120
+
+
+def test_deep_nesting_is_refused():
+    assert complaint("seed=" + "[" * 3000).endswith(NOT_READ)
+
+
+def test_the_last_of_equal_overrides_wins():
+    assert load(["seed=1", "seed=2"]).seed == 2
+
+
+def test_yaml_holds_the_whole_config():
+    config = load(["seed=3", "start=rest"])
+    assert check(yaml.safe_load(to_yaml(config))) == config
+    assert list(yaml.safe_load(to_yaml(config))) == GROUPS.split(", ")
+    assert to_dict(config) == asdict(config)
+
+
+def test_a_config_does_not_change():
+    with pytest.raises(FrozenInstanceError):
+        load([]).seed = 1
+
+
+def test_plain_data_is_checked_the_same_way(plain):
+    data = copy.deepcopy(plain)
+    data["physics"]["substep"] = 1
+    with pytest.raises(InputError, match=r"^unknown key 'physics\.substep'; valid keys under "):
+        check(data)
+    data["character"]["bodies"][0]["geoms"][0]["sizes"] = data["physics"].pop("substep")
+    with pytest.raises(
+        InputError,
+        match=r"^unknown key 'character\.bodies\.0\.geoms\.0\.sizes'; valid keys under "
+        r"character\.bodies\.0\.geoms\.0: name, size, start, mass, end, colour$",
+    ):
+        check(data)

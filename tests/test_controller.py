@@ -1,0 +1,325 @@
+"""The whole-body controller: two passes, fallbacks, and what a decision says."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from rotctl.control import Controller, condensed, controller
+from rotctl.control.pose import PoseTracker
+from rotctl.control.targets import momentum_rates
+from rotctl.errors import InputError
+from rotctl.mechanics.state import read
+from rotctl.qp import Solution, failed, make_solver
+from rotctl.simulation.start import Start, place
+
+
+class Broken:
+    """A solver that says so."""
+
+    shape = "rows"
+
+    def __init__(self, name, shape="rows", good_passes=0):
+        self.name, self.shape, self.left = name, shape, good_passes
+        self.calls = 0
+
+    def solve(self, problem, start):
+        self.calls += 1
+        self.left -= 1
+        if self.left >= 0:
+            return make_solver("qpsolvers:daqp").solve(problem, start)
+        return failed(problem, "poisoned", iterations=7)
+
+
+class Poisoned(Broken):
+    """A solver that says it solved, and did not."""
+
+    def solve(self, problem, start):
+        return Solution(np.full(len(problem.f), np.nan), True, 3, 0.0)
+
+
+@pytest.fixture
+def with_solvers(world, monkeypatch):
+    """A controller whose solvers of these names are replaced."""
+
+    def make(**solvers):
+        found = {**solvers}
+        monkeypatch.setattr(
+            controller, "make_solver", lambda name: found.get(name) or make_solver(name)
+        )
+        chosen = next(iter(found))
+        return Controller(world.model, replace(world.settings, solver=chosen))
+
+    return make
+
+
+def decide(world, chosen, step):
+    return chosen.decide(world.state(step), step.desired, step.blend)
+
+
+def pose_torques(world, step):
+    tracker = PoseTracker(world.model, world.settings.gains, 1.0 / world.settings.rate)
+    poses = np.array((step.desired.pose_a, step.desired.pose_b))
+    return tracker.torques(world.state(step), poses)
+
+
+# ---------------------------------------------------------------- the normal case
+
+
+def test_torques_are_within_limits(world, steps):
+    limit = world.model.torque_limit
+    assert all((np.abs(step.decision.torque) <= limit).all() for step in steps)
+    assert all(0.0 <= step.decision.blend <= 1.0 for step in steps)
+
+
+def test_a_roll_needs_no_fallback(steps):
+    for step in steps:
+        decision = step.decision
+        assert (decision.status, decision.fallback, decision.reasons) == (0, 0, ())
+        assert decision.residual <= 1e-5
+
+
+def test_forces_and_rates_fit_together(world, steps):
+    """World forces at the contact points explain the predicted momentum rates."""
+    for step in steps[::5]:
+        state, decision = world.state(step), step.decision
+        assert decision.force.shape == (state.contacts.count, 3)
+        arms = state.contacts.position - state.momentum.com
+        linear = decision.force.sum(axis=0) + world.model.mass * world.model.gravity
+        angular = np.cross(arms, decision.force).sum(axis=0)
+        scale = 1e-8 * (1 + np.abs(decision.rates_predicted).max())
+        assert decision.rates_predicted == pytest.approx(np.r_[linear, angular], abs=scale)
+
+
+def test_rates_wanted_are_eq_3_and_4(world, steps):
+    gains, mass = world.settings.gains, world.model.mass
+    gains = replace(gains, linear_stiffness=(3.0, 5.0, 7.0))
+    for step in steps[::20]:
+        momentum = world.state(step).momentum
+        desired = replace(step.desired, com=momentum.com + [0.1, -0.2, 0.3])
+        velocity = np.subtract(desired.com_velocity, momentum.com_velocity)
+        spin = desired.angular_velocity - momentum.angular_velocity
+        pull = np.diag(gains.linear_stiffness) @ [0.1, -0.2, 0.3]
+        linear = mass * (pull + np.diag(gains.linear_damping) @ velocity)
+        angular = momentum.inertia @ (
+            np.diag(gains.angular_stiffness) @ desired.excursion_error
+            + np.diag(gains.angular_damping) @ spin
+        )
+        found = momentum_rates(desired, momentum, mass, gains)
+        assert found == pytest.approx(np.r_[linear, angular], rel=1e-9, abs=1e-9)
+        wanted = momentum_rates(step.desired, momentum, mass, world.settings.gains)
+        assert step.decision.rates_wanted == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+
+
+def test_supervisor_as_written(world, steps):
+    """Used are the candidates whose first-pass force, or moment about the CM, is large."""
+    limits, dropped = world.settings.thresholds, 0
+    for step in steps[::3]:
+        state, terms = world.terms(step)
+        candidates = ~world.model.excluded[state.contacts.body]
+        first = condensed.solve(terms, make_solver("boxqp"))
+        force = np.einsum("mij,mi->mj", state.contacts.frame[candidates], first.force)
+        arms = state.contacts.position[candidates] - state.momentum.com
+        size = np.linalg.norm(force, axis=1)
+        moment = np.linalg.norm(np.cross(arms, force), axis=1)
+        expected = np.zeros(len(candidates), dtype=bool)
+        expected[candidates] = (size > limits.force) | (moment > limits.torque)
+        assert step.decision.used.tolist() == expected.tolist()
+        assert not step.decision.force[~expected].any()
+        dropped += int((candidates & ~expected).sum())
+        # The second pass is an optimisation over those contacts alone.
+        again = condensed.solve(terms.subset(expected[candidates]), make_solver("boxqp"))
+        assert step.decision.torque == pytest.approx(again.torque, abs=1e-2)
+    assert dropped > 0
+
+
+@pytest.mark.parametrize("name", ["none", "modified"])
+def test_other_supervisors(world, supported, name):
+    chosen = Controller(world.model, replace(world.settings, supervisor=name))
+    for step in supported[::15]:
+        state, decision = world.state(step), decide(world, chosen, step)
+        candidates = ~world.model.excluded[state.contacts.body]
+        closing = state.contacts.jacobian[::3] @ state.velocity < 0
+        if name == "none":
+            assert decision.used.tolist() == candidates.tolist()
+        else:
+            assert decision.used[candidates & closing].all()
+
+
+def head_stand(world):
+    """A state on its head, in the pose of a recorded step, and that step."""
+    data = mujoco.MjData(world.mj)
+    start = Start(pitch=np.pi, velocity=np.zeros(3), angular_velocity=np.zeros(3))
+    place(world.model, data, start, np.zeros(world.mj.nu))
+    data.qpos[2] -= 0.02
+    step = replace(world.steps[0], position=data.qpos.copy(), velocity=data.qvel.copy())
+    return world.state(step), step
+
+
+def test_the_head_is_never_used(world, steps):
+    head = world.mj.body("head").id
+    state, step = head_stand(world)
+    on_head = state.contacts.body == head
+    assert on_head.any()
+    decision = decide(world, Controller(world.model, world.settings), step)
+    assert not decision.used[on_head].any()
+    assert not decision.force[on_head].any()
+    for step in steps:
+        on_head = world.state(step).contacts.body == head
+        assert not step.decision.used[on_head].any()
+
+
+def test_a_contact_of_the_head_changes_nothing(world):
+    """Blind to it: the same torques as if it were not there."""
+    state, step = head_stand(world)
+    keep = state.contacts.body != world.mj.body("head").id
+    contacts = state.contacts
+    blind = replace(
+        state,
+        contacts=replace(
+            contacts,
+            body=contacts.body[keep],
+            position=contacts.position[keep],
+            frame=contacts.frame[keep],
+            jacobian=contacts.jacobian[np.repeat(keep, 3)],
+            row=contacts.row[keep],
+            friction=contacts.friction[keep],
+        ),
+    )
+    chosen = Controller(world.model, world.settings)
+    seen = chosen.decide(state, step.desired, 0.5)
+    unseen = chosen.decide(blind, step.desired, 0.5)
+    assert seen.torque.tobytes() == unseen.torque.tobytes()
+
+
+@pytest.mark.parametrize("name", ["boxqp", "osqp"])
+def test_no_memory(world, supported, name):
+    chosen = Controller(world.model, replace(world.settings, solver=name))
+    first = decide(world, chosen, supported[0])
+    for step in supported[1:30:7]:
+        decide(world, chosen, step)
+    again = decide(world, chosen, supported[0])
+    assert first.torque.tobytes() == again.torque.tobytes()
+    assert first.force.tobytes() == again.force.tobytes()
+    assert first.iterations == again.iterations
+
+
+def test_literal_form_decides_alike(world, supported):
+    chosen = Controller(
+        world.model, replace(world.settings, form="literal", solver="qpsolvers:daqp")
+    )
+    for step in supported[::15]:
+        decision = decide(world, chosen, step)
+        assert decision.status == 0
+        assert decision.used.tolist() == step.decision.used.tolist()
+        assert decision.torque == pytest.approx(step.decision.torque, abs=1e-2)
+
+
+def test_in_the_air(world):
+    position, velocity = world.in_the_air()
+    step = replace(world.steps[5], position=position, velocity=velocity)
+    decision = decide(world, Controller(world.model, world.settings), step)
+    assert decision.used.shape == (0,)
+    assert decision.force.shape == (0, 3)
+    gravity = world.model.mass * world.model.gravity
+    assert decision.rates_predicted == pytest.approx(np.r_[gravity, 0, 0, 0], abs=1e-9)
+
+
+# ---------------------------------------------------------------- refusals and fallbacks
+
+
+def test_literal_needs_a_solver_with_rows(world):
+    with pytest.raises(InputError) as error:
+        Controller(world.model, replace(world.settings, form="literal", solver="boxqp"))
+    assert str(error.value) == (
+        "controller.form=literal has equality rows, which boxqp cannot solve; choose "
+        "controller.solver=osqp or controller.solver=qpsolvers:<name>"
+    )
+
+
+@pytest.mark.parametrize("solver", [Broken("osqp"), Poisoned("osqp")])
+def test_boxqp_steps_in(world, supported, with_solvers, solver):
+    chosen, usual = with_solvers(osqp=solver), Controller(world.model, world.settings)
+    for step in supported[::25]:
+        decision, expected = decide(world, chosen, step), decide(world, usual, step)
+        assert (decision.status, decision.fallback) == (1, 1)
+        assert len(decision.reasons) == 1
+        assert decision.reasons[0].startswith("condensed osqp: ")
+        assert decision.torque.tobytes() == expected.torque.tobytes()
+        assert decision.used.tolist() == expected.used.tolist()
+
+
+def test_the_reason_is_the_solver_s(world, supported, with_solvers):
+    decision = decide(world, with_solvers(osqp=Broken("osqp")), supported[0])
+    assert decision.reasons == ("condensed osqp: poisoned",)
+    assert decision.iterations == 7
+    decision = decide(world, with_solvers(osqp=Poisoned("osqp")), supported[0])
+    assert decision.reasons == ("condensed osqp: torques are not finite",)
+
+
+def test_a_failure_in_the_second_pass_falls_back_too(world, supported, with_solvers):
+    partial = next(
+        s
+        for s in supported
+        if 0 < s.decision.used.sum() < (~world.model.excluded[world.state(s).contacts.body]).sum()
+        and (np.abs(s.decision.torque) < world.model.torque_limit).all()
+    )
+    solver = Broken("osqp", good_passes=1)
+    decision = decide(world, with_solvers(osqp=solver), partial)
+    assert solver.calls >= 2
+    assert decision.status == 1
+    assert decision.torque == pytest.approx(partial.decision.torque, abs=1e-9)
+
+
+@pytest.mark.parametrize("kind", [Broken, Poisoned])
+def test_when_all_fail_the_pose_is_tracked(world, supported, with_solvers, kind):
+    chosen = with_solvers(osqp=kind("osqp"), boxqp=kind("boxqp", "bounds"))
+    limit, clipped = world.model.torque_limit, 0
+    for step in supported[::10]:
+        decision = decide(world, chosen, step)
+        a, b = pose_torques(world, step)
+        expected = step.blend * a + (1 - step.blend) * b
+        assert (decision.status, decision.fallback) == (2, 2)
+        assert len(decision.reasons) == 2
+        assert decision.torque == pytest.approx(np.clip(expected, -limit, limit), abs=1e-9)
+        assert decision.blend == step.blend
+        assert not decision.used.any()
+        assert not decision.force.any()
+        assert np.isnan(decision.residual)
+        assert np.isfinite(decision.rates_predicted).all()
+        clipped += int((np.abs(expected) > limit).any())
+    assert clipped > 0
+
+
+def test_boxqp_alone_fails_to_the_pose(world, supported, with_solvers):
+    decision = decide(world, with_solvers(boxqp=Broken("boxqp", "bounds")), supported[0])
+    assert (decision.status, decision.fallback) == (2, 1)
+    assert decision.reasons == ("condensed boxqp: poisoned",)
+
+
+def test_iterations_count_every_pass(world, supported, with_solvers):
+    """Also the one before torque limits turn out to bind."""
+
+    class Counting(Broken):
+        def solve(self, problem, start):
+            self.calls += 1
+            solution = make_solver("qpsolvers:daqp").solve(problem, start)
+            return replace(solution, iterations=10)
+
+    several = 0
+    for step in supported[::5]:
+        solver = Counting("osqp")
+        decision = decide(world, with_solvers(osqp=solver), step)
+        assert decision.iterations == 10 * solver.calls
+        several = max(several, solver.calls)
+    assert several >= 3
+
+
+def test_reads_the_state_as_the_loop_does(world, steps):
+    """A revived state and the loop's own give the same decision, bit for bit."""
+    chosen = Controller(world.model, world.settings)
+    for step in steps[::30]:
+        state = read(world.model, world.data(step.position, step.velocity))
+        decision = chosen.decide(state, step.desired, step.blend)
+        assert decision.torque.tobytes() == step.decision.torque.tobytes()

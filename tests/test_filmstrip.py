@@ -1,0 +1,226 @@
+"""A short real run as a picture, and the words where there is none."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from rotctl.config import load
+from rotctl.errors import InputError, LogError
+from rotctl.log import SCHEMA, RunLog, write_run
+from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
+from rotctl.report import filmstrip as module
+from rotctl.report import gl
+from rotctl.report.filmstrip import filmstrip
+from rotctl.run import LOG_NAME, run
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    result = run(load(["seed=1", "duration=0.5"]), tmp_path_factory.mktemp("runs"))
+    return RunLog.open(result.folder / LOG_NAME)
+
+
+@pytest.fixture
+def picture(tmp_path):
+    """Where to draw, on a machine that can; CI must be one unless it says otherwise."""
+    try:
+        gl.backend()
+    except InputError as error:
+        if os.environ.get("CI") == "true" and os.environ.get("ROTCTL_CI_NO_PICTURES") != "1":
+            raise
+        pytest.skip(str(error))
+    return tmp_path / "strip.png"
+
+
+def changed(log, folder, arrays=(), **attributes):
+    """The same log with other content."""
+    content = {name: log[name] for name in SCHEMA if name != MODEL_PATH} | dict(arrays)
+    kept = {k: v for k, v in log.attributes.items() if k not in WRITER_ATTRIBUTES}
+    model = attributes.pop("model_xml", log.model_xml)
+    write_run(folder / "changed.h5", content, model_xml=model, attributes=kept | attributes)
+    return RunLog.open(folder / "changed.h5")
+
+
+def size(columns, rows):
+    wide, high = module.FRAME
+    return (
+        2 * module._MARGIN + columns * (wide + module._GAP) - module._GAP,
+        module._HEADER + rows * (high + module._CAPTION + module._GAP) + module._FOOTER,
+    )
+
+
+def frames_of(path, columns, rows):
+    """The pixels of each frame."""
+    wide, high = module.FRAME
+    with Image.open(path) as image:
+        pixels = np.asarray(image.convert("RGB"), dtype=int)
+    step = high + module._CAPTION + module._GAP
+    return [
+        pixels[y : y + high, x : x + wide]
+        for y in range(module._HEADER, module._HEADER + rows * step, step)
+        for x in range(
+            module._MARGIN, module._MARGIN + columns * (wide + module._GAP), wide + module._GAP
+        )
+    ]
+
+
+def coloured(pixels, colour):
+    return int((np.abs(pixels - np.array(colour)).max(axis=-1) <= 12).sum())
+
+
+def test_frames_show_a_character_that_moves_under_a_sky(log, picture):
+    filmstrip(log, picture, frames=4, columns=2)
+    with Image.open(picture) as image:
+        assert (image.format, image.size) == ("PNG", size(columns=2, rows=2))
+    frames = frames_of(picture, columns=2, rows=2)
+    for frame in frames:
+        assert frame[2].min() > 120  # sky, not black
+        assert frame.std() > 25  # and something in front of it
+    assert all(np.abs(a - b).mean() > 1.0 for a, b in zip(frames, frames[1:], strict=False))
+
+
+def test_used_contacts_are_marked(log, picture):
+    row = next(i for i in range(log.steps) if log["contacts/used"][i].any())
+    time = log["trajectory/time"]
+    filmstrip(log, picture, frames=1, start=float(time[row]))
+    assert coloured(frames_of(picture, 1, 1)[0], module._USED) > 20
+
+
+def test_the_same_log_gives_the_same_bytes(log, picture):
+    filmstrip(log, picture, frames=2)
+    first = picture.read_bytes()
+    filmstrip(log, picture, frames=2)
+    assert picture.read_bytes() == first
+    assert [path.name for path in picture.parent.iterdir()] == [picture.name]
+
+
+def test_there_are_no_more_frames_than_steps(log, picture):
+    filmstrip(log, picture, frames=50, start=0.0, end=0.05, columns=4)
+    with Image.open(picture) as image:
+        assert image.size == size(columns=4, rows=1)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "colour"),
+    [
+        ({"success": True, "revolutions": 2.0, "duration": 3.0}, module._GOOD),
+        ({"success": False, "failure_reason": "stalled"}, module._BAD),
+        ({"success": "\x1b[31m"}, module._SOFT),
+    ],
+)
+def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, colour):
+    filmstrip(changed(log, tmp_path, outcome=outcome), picture, frames=1)
+    with Image.open(picture) as image:
+        verdict = np.asarray(image.convert("RGB"), dtype=int)[50 : module._HEADER]
+    shown = {c: coloured(verdict, c) for c in (module._GOOD, module._BAD, module._SOFT)}
+    assert shown[colour] > 20
+    assert sum(shown.values()) == shown[colour]
+
+
+@pytest.mark.parametrize(
+    ("outcome", "text"),
+    [
+        (
+            {"success": True, "revolutions": 2.0, "duration": 3.0},
+            "success: 2.0 revolutions in 3.0 s",
+        ),
+        ({"success": True, "revolutions": 10**400}, "success"),
+        (
+            {"success": False, "failure_reason": "stalled for 1.60 s from t = 1.38 s"},
+            "FAILED: stalled for 1.60 s from t = 1.38 s",
+        ),
+        ({"success": False, "failure_reason": "a\nb" + "c" * 999}, "FAILED: a b" + "c" * 137),
+        ({}, "outcome unknown"),
+    ],
+)
+def test_the_verdict_in_words(outcome, text):
+    assert module._verdict(outcome)[1] == text
+
+
+def test_a_run_that_broke_down_is_drawn_until_there(log, picture, tmp_path):
+    states = log["trajectory/qpos"].copy()
+    states[20:, 0] = np.nan
+    states[19, 1] = 1e300
+    broken = changed(log, tmp_path, {"trajectory/qpos": states})
+    filmstrip(broken, picture, frames=2)
+    last = log["trajectory/time"][18]
+    with pytest.raises(InputError, match=f"^end is 0.45 s, valid: 0 to {last:g} s$"):
+        filmstrip(broken, picture, end=0.45)
+
+
+def test_a_run_without_a_drawable_step_is_refused(log, picture, tmp_path):
+    states = np.full_like(log["trajectory/qpos"], np.nan)
+    broken = changed(log, tmp_path, {"trajectory/qpos": states})
+    with pytest.raises(LogError) as caught:
+        filmstrip(broken, picture)
+    assert str(caught.value) == f"{broken.path}: has no step that could be drawn"
+
+
+def test_by_default_two_turns_after_settling_are_shown_or_the_whole_run():
+    time = np.arange(0, 6, 0.1)
+    assert module._two_turns(time, time) == (20, 40)
+    assert module._two_turns(time, -time) == (20, 40)
+    assert module._two_turns(time, 0.4 * time) == (0, 59)
+    assert module._two_turns(time[:10], time[:10]) == (0, 9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"frames": 0}, "frames is 0, valid: 1 to 200"),
+        ({"frames": 201}, "frames is 201, valid: 1 to 200"),
+        ({"columns": 0}, "columns is 0, valid: 1 to 12, the number of frames"),
+        ({"frames": 3, "columns": 4}, "columns is 4, valid: 1 to 3, the number of frames"),
+        ({"start": -1.0}, "start is -1 s, valid: 0 to 0.483333 s"),
+        ({"end": 0.6}, "end is 0.6 s, valid: 0 to 0.483333 s"),
+        ({"start": float("nan")}, "start is nan s, valid: 0 to 0.483333 s"),
+        ({"start": 0.3, "end": 0.3}, "start is 0.3 s, valid: less than end = 0.3 s"),
+        ({"start": 0.3, "end": 0.1}, "start is 0.3 s, valid: less than end = 0.1 s"),
+    ],
+)
+def test_bad_arguments_are_named_with_their_range(log, tmp_path, arguments, message):
+    with pytest.raises(InputError) as caught:
+        filmstrip(log, tmp_path / "strip.png", **arguments)
+    assert str(caught.value) == message
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_folder_that_is_not_there_is_named(log, picture):
+    out = picture.parent / "nowhere" / "strip.png"
+    with pytest.raises(InputError) as caught:
+        filmstrip(log, out, frames=1)
+    assert str(caught.value) == f"cannot write {out}: No such file or directory"
+
+
+def test_a_model_that_names_files_is_refused(log, picture, tmp_path):
+    hostile = log.model_xml.replace("<worldbody>", "<worldbody><include file='/etc/passwd'/>")
+    with pytest.raises(LogError) as caught:
+        filmstrip(changed(log, tmp_path, model_xml=hostile), picture)
+    assert str(caught.value) == (
+        f"{tmp_path / 'changed.h5'}: model/mjcf has <include>, which a log's model may not have"
+    )
+    assert not picture.exists()
+
+
+def test_a_bogus_mujoco_gl_is_one_line(log, tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from rotctl.errors import InputError\n"
+        "from rotctl.log import RunLog; from rotctl.report.filmstrip import filmstrip\n"
+        "try: filmstrip(RunLog.open(sys.argv[1]), Path(sys.argv[2]))\n"
+        "except InputError as error: print(error)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(log.path), str(tmp_path / "strip.png")],
+        env={**os.environ, "MUJOCO_GL": "bogus"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == (
+        f"cannot render: MUJOCO_GL=bogus gives no working OpenGL; "
+        f"unset it to try {', '.join(gl._CANDIDATES)}; on Debian: apt-get install libosmesa6\n"
+    )

@@ -1,0 +1,344 @@
+"""Both forms of the optimisation: against the paper's cost, each other and the dynamics."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+import qpsolvers
+
+from rotctl.control import condensed, literal
+from rotctl.control.answer import Answer
+from rotctl.control.settings import ControllerSettings
+from rotctl.qp import Problem, make_solver
+from rotctl.qp.boxqp import BoxQP
+
+# [N m] how far two forms of the same problem may differ, solved by an active-set method and
+# by boxqp (which regularises; test_boxqp.py is stricter where it matters).
+EXACT, TORQUE = 1e-4, 1e-2
+
+
+def reference(problem: Problem):
+    """A tight solution of a problem with rows, by an active-set method; none of our code."""
+    equal = problem.low == problem.high
+    answer = qpsolvers.solve_problem(
+        qpsolvers.Problem(
+            problem.H,
+            problem.f,
+            problem.G[~equal] if (~equal).any() else None,
+            problem.high[~equal] if (~equal).any() else None,
+            problem.G[equal] if equal.any() else None,
+            problem.low[equal] if equal.any() else None,
+            problem.lower,
+            problem.upper,
+        ),
+        "daqp",
+        primal_tol=1e-11,
+        dual_tol=1e-11,
+    )
+    assert answer.found
+    return answer.x
+
+
+def literal_answer(world, terms, state, problem=None):
+    x = reference(problem or literal.assemble(terms, world.model, state))
+    nv, nu, m = world.mj.nv, world.mj.nu, terms.contacts
+    return Answer(x[nv : nv + nu], x[nv + nu : -1].reshape(m, 3), float(x[-1]), None)
+
+
+def assert_same(terms, found, expected, tolerance=TORQUE):
+    assert found.solution.solved, found.solution.reason
+    assert np.abs(found.torque - expected.torque).max() <= tolerance
+    assert found.blend == pytest.approx(expected.blend, abs=1e-4)
+    rates = terms.maps @ (found.force - expected.force).ravel()
+    scale = 1 + np.abs(terms.maps @ expected.force.ravel()).max()
+    assert np.abs(rates).max() <= 1e-4 * scale
+
+
+def within_cone(force, mu, slack):
+    normal = force[:, 0]
+    return (normal >= -slack).all() and (np.abs(force[:, 1:]) <= mu * normal[:, None] + slack).all()
+
+
+# ---------------------------------------------------------------- the literal form is eq. 2
+
+
+def dynamics(world, terms, state, torque, force):
+    """qddot (nv,) from M qddot + C = S' tau + J' lambda, densely."""
+    M = np.zeros((world.mj.nv, world.mj.nv))
+    mujoco.mj_fullM(world.mj, state.data, M)
+    pushed = terms.jacobian.T @ force.ravel()
+    pushed[6:] += torque
+    return np.linalg.solve(M, pushed - state.bias)
+
+
+def paper_cost(world, terms, state, torque, force, blend):
+    """Eq. 2 with its objectives written out; rates of L and H by differences, not by matrices."""
+    acceleration = dynamics(world, terms, state, torque, force)
+    rates = world.rates_by_difference(state.position, state.velocity, acceleration)
+    after = terms.jacobian @ (state.velocity + terms.period * acceleration)
+    wanted = blend * terms.pose_a + (1 - blend) * terms.pose_b
+    weights = terms.weights
+    across = weights.angular_momentum * weights.out_of_plane
+    miss = terms.rates - rates
+    return 0.5 * (
+        weights.linear_momentum * miss[:3] @ miss[:3]
+        + weights.angular_momentum * miss[4] ** 2
+        + across * (miss[3] ** 2 + miss[5] ** 2)
+        + weights.pose * (wanted - torque) @ (wanted - torque)
+        + weights.contact_velocity * after @ after
+        + weights.contact_force * (force**2).sum()
+        + terms.blend_weight * (blend - terms.blend) ** 2
+    )
+
+
+def test_literal_cost_is_the_paper_s(world, supported):
+    rng = np.random.default_rng(0)
+    for step in supported[::8]:
+        state, terms = world.terms(step)
+        problem = literal.assemble(terms, world.model, state)
+        constant, costs, papers = None, [], []
+        for _ in range(3):
+            torque = 50 * rng.normal(size=world.mj.nu)
+            force = 100 * rng.normal(size=(terms.contacts, 3))
+            blend = rng.uniform()
+            acceleration = dynamics(world, terms, state, torque, force)
+            x = np.concatenate((acceleration, torque, force.ravel(), [blend]))
+            costs.append(problem.objective(x))
+            papers.append(paper_cost(world, terms, state, torque, force, blend))
+            rows = problem.G[: world.mj.nv] @ x - problem.low[: world.mj.nv]
+            assert np.abs(rows).max() < 1e-6  # the equality is the dynamics
+        constant = np.subtract(papers, costs)  # 1/2 b'Wb, the same for every x
+        assert np.ptp(constant) < 1e-5 * np.abs(papers).max()
+
+
+def test_literal_momentum_matrix(world, steps):
+    """Against MuJoCo's own momentum matrices."""
+    for step in steps[::25]:
+        state = world.state(step)
+        M = np.zeros((world.mj.nv, world.mj.nv))
+        mujoco.mj_fullM(world.mj, state.data, M)
+        _, terms = world.terms(step)
+        (momentum, *_) = literal.objectives(terms, world.model, state, M)
+        linear, angular = np.zeros((2, 3, world.mj.nv))
+        mujoco.mj_jacSubtreeCom(world.mj, state.data, linear, 1)
+        mujoco.mj_angmomMat(world.mj, state.data, angular, 1)
+        found = momentum.A[:, : world.mj.nv]
+        assert np.abs(found[:3] - world.model.mass * linear).max() < 1e-10
+        assert np.abs(found[3:] - angular).max() < 1e-10
+
+
+# ---------------------------------------------------------------- the condensed form equals it
+
+
+@pytest.mark.parametrize(("solver", "tolerance"), [("boxqp", TORQUE), ("qpsolvers:daqp", EXACT)])
+def test_condensed_equals_literal(world, steps, solver, tolerance):
+    """All recorded steps, first pass."""
+    chosen = make_solver(solver)
+    for step in steps:
+        state, terms = world.terms(step)
+        expected = literal_answer(world, terms, state)
+        assert_same(terms, condensed.solve(terms, chosen), expected, tolerance)
+
+
+def test_condensed_equals_literal_over_kept_contacts(world, supported):
+    """The second pass; `subset` must give what a fresh collection over those contacts gives."""
+    rng = np.random.default_rng(0)
+    for step in supported[::2]:
+        state, terms = world.terms(step)
+        terms.mobility, terms.actuation_square, terms.momentum_square, terms.momentum_pull  # noqa: B018
+        keep = rng.uniform(size=terms.contacts) < 0.6
+        part = terms.subset(keep)
+        assert part.contacts == keep.sum()
+        expected = literal_answer(world, part, state)
+        assert_same(part, condensed.solve(part, BoxQP()), expected)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.15])
+@pytest.mark.parametrize(("solver", "tolerance"), [("boxqp", TORQUE), ("qpsolvers:daqp", EXACT)])
+def test_binding_torque_limits(world, supported, share, solver, tolerance):
+    binding, chosen = 0, make_solver(solver)
+    for step in supported[::4]:
+        state, terms = world.terms(step)
+        terms = replace(terms, torque_limit=share * terms.torque_limit)
+        found = condensed.solve(terms, chosen)
+        assert (np.abs(found.torque) <= terms.torque_limit + 1e-5).all()
+        assert_same(terms, found, literal_answer(world, terms, state), tolerance)
+        binding += int((np.abs(found.torque) >= terms.torque_limit - 1e-6).any())
+    assert binding >= 10
+
+
+def test_literal_solve_reads_the_solution_in_order(world, supported):
+    solver = make_solver("qpsolvers:daqp")
+    for step in supported[::10]:
+        state, terms = world.terms(step)
+        found = literal.solve(terms, world.model, state, solver)
+        assert_same(terms, found, literal_answer(world, terms, state))
+
+
+def test_forces_stay_in_the_friction_pyramid(world, supported):
+    """With a slippery ground in mind the pyramid binds, and its four sides all occur."""
+    sides = np.zeros((2, 2), dtype=bool)
+    for step in supported:
+        _, terms = world.terms(step)
+        terms = replace(terms, friction=0.2)
+        force = condensed.solve(terms, BoxQP()).force
+        assert within_cone(force, 0.2, 1e-6 * (1 + np.abs(force).max()))
+        pressed = force[force[:, 0] > 10.0]
+        limit = 0.2 * pressed[:, :1] * (1 - 1e-6)
+        sides |= np.array([(pressed[:, 1:] >= limit).any(0), (pressed[:, 1:] <= -limit).any(0)])
+    assert sides.all()
+
+
+# ---------------------------------------------------------------- no contacts
+
+
+def test_without_contacts_the_blend_is_tracked(world):
+    position, velocity = world.in_the_air(1)
+    step = replace(world.steps[10], position=position, velocity=velocity, blend=0.3)
+    state, terms = world.terms(step)
+    found = condensed.solve(terms, BoxQP())
+    assert terms.contacts == 0
+    assert found.force.shape == (0, 3)
+    wide = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
+    free = condensed.solve(wide, BoxQP())
+    assert free.blend == pytest.approx(0.3, abs=1e-6)
+    assert free.torque == pytest.approx(0.3 * terms.pose_a + 0.7 * terms.pose_b, abs=1e-3)
+    tight = replace(terms, torque_limit=np.full(world.mj.nu, 1.0))
+    assert_same(tight, condensed.solve(tight, BoxQP()), literal_answer(world, tight, state))
+
+
+# ---------------------------------------------------------------- weights
+
+
+def without(world, terms, state, index, rows=slice(None)):
+    """The literal problem with objective `index` (or some of its rows) left out."""
+    M = np.zeros((world.mj.nv, world.mj.nv))
+    mujoco.mj_fullM(world.mj, state.data, M)
+    problem = literal.assemble(terms, world.model, state)
+    H, f = np.zeros_like(problem.H), np.zeros_like(problem.f)
+    for i, objective in enumerate(literal.objectives(terms, world.model, state, M)):
+        keep = np.ones(len(objective.b), dtype=bool)
+        if i == index:
+            keep[rows] = False
+        A, b, W = objective.A[keep], objective.b[keep], objective.W[keep]
+        H += A.T @ (W[:, None] * A)
+        f -= A.T @ (W * b)
+    return replace(problem, H=H, f=f)
+
+
+@pytest.mark.parametrize(
+    ("weights", "index", "rows"),
+    [
+        ({"linear_momentum": 0.0}, 0, [0, 1, 2]),
+        ({"angular_momentum": 0.0}, 0, [3, 4, 5]),
+        ({"out_of_plane": 0.0}, 0, [3, 5]),
+        ({"contact_velocity": 0.0}, 2, slice(None)),
+    ],
+)
+def test_zero_weight_equals_absent(world, supported, weights, index, rows):
+    for step in supported[::12]:
+        state, full = world.terms(step)
+        _, terms = world.terms(step, **weights)
+        absent = without(world, full, state, index, rows)
+        found = condensed.solve(terms, BoxQP())
+        assert_same(terms, found, literal_answer(world, terms, state, absent))
+
+
+def test_zero_contact_velocity_leaves_the_pose_torques(world, supported):
+    """Nothing then ties the torques to the contact forces."""
+    for step in supported[::12]:
+        _, terms = world.terms(step, contact_velocity=0.0)
+        terms = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
+        found = condensed.solve(terms, BoxQP())
+        expected = found.blend * terms.pose_a + (1 - found.blend) * terms.pose_b
+        assert found.torque == pytest.approx(expected, abs=1e-6)
+
+
+def test_zero_pose_weight_ignores_the_poses(world, supported):
+    for step in supported[::12]:
+        _, terms = world.terms(step, pose=0.0)
+        other = replace(terms, pose_a=terms.pose_b + 50.0, pose_b=terms.pose_a)
+        found, again = condensed.solve(terms, BoxQP()), condensed.solve(other, BoxQP())
+        assert found.solution.solved
+        assert (np.abs(found.torque) <= terms.torque_limit + 1e-6).all()
+        assert found.torque.tolist() == again.torque.tolist()
+        assert found.blend == pytest.approx(terms.blend, abs=1e-4)
+
+
+def test_zero_pose_weight_without_contacts(world):
+    position, velocity = world.in_the_air(2)
+    _, terms = world.terms(replace(world.steps[0], position=position, velocity=velocity), pose=0.0)
+    found = condensed.solve(terms, BoxQP())
+    assert found.solution.solved
+    assert np.abs(found.torque).max() < 1e-6
+
+
+def test_everything_off_but_the_pose(world, supported):
+    step = supported[3]
+    _, terms = world.terms(step, linear_momentum=0.0, angular_momentum=0.0, contact_velocity=0.0)
+    terms = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
+    found = condensed.solve(terms, BoxQP())
+    assert np.abs(found.force).max() < 1e-6
+    expected = terms.blend * terms.pose_a + (1 - terms.blend) * terms.pose_b
+    assert found.torque == pytest.approx(expected, abs=1e-3)
+
+
+# ---------------------------------------------------------------- targets
+
+
+def test_a_target_that_is_met_is_kept(world, supported):
+    """Poses, momentum rates and still contacts that fit together cost nothing at all."""
+    tried = 0
+    for step in supported[::6]:
+        state, terms = world.terms(step, contact_force=1e-9)
+        m = terms.contacts
+        if m > 4:
+            continue  # more contact rows than torques can serve
+        force = np.tile([150.0, 20.0, -10.0], (m, 1))
+        still = -(terms.mobility @ force.ravel() + terms.drift)
+        torque = np.linalg.lstsq(terms.actuation, still, rcond=None)[0]
+        if np.abs(terms.actuation @ torque - still).max() > 1e-6:
+            continue
+        tried += 1
+        terms = replace(
+            terms,
+            rates=terms.maps @ force.ravel() + terms.weight,
+            pose_a=torque,
+            pose_b=torque,
+            torque_limit=np.full(world.mj.nu, 2 * np.abs(torque).max()),
+        )
+        found = condensed.solve(terms, BoxQP())
+        scale = 1 + np.abs(torque).max()
+        assert found.torque == pytest.approx(torque, abs=1e-4 * scale)
+        predicted = terms.maps @ found.force.ravel() + terms.weight
+        assert predicted == pytest.approx(terms.rates, abs=1e-3 * (1 + np.abs(terms.rates).max()))
+        assert found.blend == pytest.approx(terms.blend, abs=1e-4)
+        cost = paper_cost(world, terms, state, found.torque, found.force, found.blend)
+        assert cost < 1e-4 * terms.weights.pose * torque @ torque
+    assert tried >= 3
+
+
+def test_predicted_rates_come_true(world, supported):
+    """Obey the torques and forces: L and H then change as the controller said."""
+    for step in supported[::6]:
+        state, _ = world.terms(step)
+        force = step.decision.force.ravel()
+        frames = state.contacts.frame
+        along = np.einsum("mij,mj->mi", frames, force.reshape(-1, 3))
+        M = np.zeros((world.mj.nv, world.mj.nv))
+        mujoco.mj_fullM(world.mj, state.data, M)
+        pushed = state.contacts.jacobian.T @ along.ravel()
+        pushed[6:] += step.decision.torque
+        acceleration = np.linalg.solve(M, pushed - state.bias)
+        measured = world.rates_by_difference(step.position, step.velocity, acceleration)
+        expected = step.decision.rates_predicted
+        assert measured == pytest.approx(expected, abs=1e-4 * (1 + np.abs(expected).max()))
+
+
+def test_mu_of_the_controller_is_used(world, supported):
+    settings: ControllerSettings = replace(world.settings, friction=0.05)
+    _, terms = world.terms(supported[0], settings)
+    assert terms.friction == 0.05
+    force = condensed.solve(terms, BoxQP()).force
+    assert within_cone(force, 0.05, 1e-6 * (1 + np.abs(force).max()))

@@ -1,0 +1,114 @@
+"""A stranger's model is refused before MuJoCo sees it."""
+
+import pytest
+
+from rotctl.errors import LogError
+from rotctl.report import stored_model
+
+BALL = "<body><freejoint/><geom size='1'/></body>"
+
+
+def mjcf(inside="", world=""):
+    return f"<mujoco>{inside}<worldbody>{BALL}{world}</worldbody></mujoco>"
+
+
+def nested(depth):
+    return mjcf(world="<body>" * depth + "</body>" * depth)
+
+
+REFUSED = [
+    (
+        mjcf("<include file='/etc/passwd'/>"),
+        "has <include>, which a log's model may not have",
+    ),
+    (
+        mjcf("<asset><mesh name='m' file='/tmp/m.obj'/></asset>"),
+        "has <mesh>, which a log's model may not have",
+    ),
+    (
+        mjcf("<extension><plugin plugin='x'/></extension>"),
+        "has <extension>, which a log's model may not have",
+    ),
+    (
+        mjcf(world="<replicate count='1000000000'><geom size='1'/></replicate>"),
+        "has <replicate>, which a log's model may not have",
+    ),
+    (
+        mjcf("<asset><texture name='t' type='2d' file='/dev/zero'/></asset>"),
+        "has file='/dev/zero' in <texture>; a log's model stands alone",
+    ),
+    (
+        mjcf("<asset><texture name='t' type='cube' fileright='a.png'/></asset>"),
+        "has fileright='a.png' in <texture>; a log's model stands alone",
+    ),
+    (
+        mjcf("<compiler meshdir='/root'/>"),
+        "has meshdir='/root' in <compiler>; a log's model stands alone",
+    ),
+    (
+        mjcf(
+            "<asset><texture name='t' type='2d' builtin='flat' width='99999' height='9'/></asset>"
+        ),
+        "has width='99999' in <texture>, valid: 0 to 1024",
+    ),
+    (
+        mjcf("<asset><hfield name='h' nrow='-1' ncol='9' size='1 1 1 1'/></asset>"),
+        "has nrow='-1' in <hfield>, valid: 0 to 1024",
+    ),
+    (
+        '<!DOCTYPE mujoco [<!ENTITY a "b">]><mujoco/>',
+        "has a document type; a log's model needs none",
+    ),
+    (nested(200), "is nested more than 100 deep"),
+    (mjcf(world="<site/>" * 20_001), "has more than 20000 elements"),
+    ("<mujoco>", "is not XML: no element found: line 1, column 8"),
+    ("", "is not XML: no element found: line 1, column 0"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), REFUSED)
+def test_what_a_log_has_no_use_for_is_refused(text, message):
+    with pytest.raises(LogError) as caught:
+        stored_model.checked(text)
+    assert str(caught.value) == message
+
+
+def test_mujoco_reads_only_what_was_checked():
+    assert "include" not in stored_model.checked(mjcf("<!-- <include file='x'/> -->"))
+
+
+class Stored:
+    """As much of a log as `load` uses."""
+
+    path = "run.h5"
+
+    def __init__(self, text, nq):
+        self.model_xml = text
+        self.sizes = {"nq": nq}
+
+
+@pytest.mark.parametrize(
+    ("text", "nq", "message"),
+    [
+        (
+            mjcf("<include file='x'/>"),
+            7,
+            "has <include>, which a log's model may not have",
+        ),
+        (mjcf(), 8, "has nq = 7, the trajectory 8"),
+        ("<mujoco/>", 0, "has nothing that moves"),
+        (
+            mjcf(world="<geom size='x'/>"),
+            7,
+            "does not compile: XML Error: bad format in attribute 'size' Element 'geom', line 1",
+        ),
+    ],
+)
+def test_a_model_that_does_not_fit_its_log_is_refused(text, nq, message):
+    with pytest.raises(LogError) as caught:
+        stored_model.load(Stored(text, nq))
+    assert str(caught.value) == f"run.h5: model/mjcf {message}"
+
+
+def test_a_sound_model_is_compiled():
+    assert stored_model.load(Stored(mjcf(), 7)).ngeom == 1

@@ -1,0 +1,91 @@
+"""A config becomes parts that fit together, and an identity."""
+
+import re
+
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.scenario import build
+
+
+def run_id(*overrides):
+    return build(load(list(overrides))).run_id
+
+
+def test_the_same_config_is_the_same_run():
+    assert re.fullmatch("[0-9a-f]{12}", run_id())
+    assert run_id() == run_id("seed=0", "start=tucked") == run_id("duration=20")
+
+
+def test_whatever_changes_the_run_changes_its_id():
+    ids = [
+        run_id(*overrides)
+        for overrides in (
+            [],
+            ["seed=1"],
+            ["duration=19"],
+            ["start=rest"],
+            ["physics.substeps=5"],
+            ["controller.solver=osqp"],
+            ["controller.gains.pose_damping=1"],
+            ["character.mass=71"],
+            ["behaviour.poses.a.hip_x=0.21"],
+        )
+    ]
+    assert len(set(ids)) == len(ids)
+
+
+def test_the_start_is_drawn_from_the_seed_within_its_ranges():
+    config = load(["seed=4"])
+    start, again = build(config).start, build(config).start
+    other = build(load(["seed=5"])).start
+    assert start.pitch == again.pitch != other.pitch
+    assert np.array_equal(start.velocity, again.velocity)
+    assert np.array_equal(start.angular_velocity, again.angular_velocity)
+    low, high = config.start.pitch
+    assert low <= start.pitch <= high
+    low, high = config.start.speed_x
+    assert low <= start.velocity[0] <= high
+    low, high = config.start.angular_velocity_y
+    assert low <= start.angular_velocity[1] <= high
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (
+            ["controller.solver=foo"],
+            "controller.solver='foo' is unknown; valid: boxqp, osqp, qpsolvers:<name> "
+            "(for example qpsolvers:daqp)",
+        ),
+        (
+            ["controller.form=literal"],
+            "controller.form=literal has equality rows, which boxqp cannot solve; choose "
+            "controller.solver=osqp or controller.solver=qpsolvers:<name>",
+        ),
+        (
+            ["character.height=2"],
+            "character.height is 2 m, but the bodies stand 1.750 m tall",
+        ),
+    ],
+)
+def test_parts_that_do_not_fit_are_refused_in_one_line(overrides, message):
+    with pytest.raises(InputError) as caught:
+        build(load(overrides))
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("override", "start"),
+    [
+        ("controller.solver=qpsolvers:nope", "controller.solver: qpsolvers has no solver 'nope' "),
+        ("character.trunk=[nope]", "character.trunk names the unknown body 'nope'; bodies: "),
+        ("+behaviour.poses.a.nope=1", "behaviour.poses.a names the unknown joint 'nope'; valid: "),
+    ],
+)
+def test_unknown_names_are_answered_with_the_known_ones(override, start):
+    with pytest.raises(InputError) as caught:
+        build(load([override]))
+    assert str(caught.value).startswith(start)
