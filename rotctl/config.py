@@ -7,6 +7,7 @@ no `_target_` or resolver is honoured, so that a stranger's config cannot execut
 import json
 import re
 from dataclasses import asdict
+from functools import cache
 from typing import Annotated, Any
 
 import yaml
@@ -22,7 +23,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.control import ControllerSettings
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, groups
+from rotctl.listing import choices, conf_dir
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.model import Physics
 from rotctl.mechanics.terrain import Terrain
@@ -129,14 +130,9 @@ def _checked_key(override: str) -> str:
         raise InputError(f"{shown}: run takes one value for {key}; start one run for each")
     if value == {}:
         raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
-    choices = groups().get(key, {})
-    if (
-        choices
-        and not parsed.is_delete()
-        and not isinstance(value, dict)
-        and value not in [*choices]
-    ):
-        raise InputError(f"{key}={_brief(value)}: no such choice; valid: {', '.join(choices)}")
+    valid = choices(key)
+    if valid and not parsed.is_delete() and not isinstance(value, dict) and value not in valid:
+        raise InputError(f"{key}={_brief(value)}: no such choice; valid: {', '.join(valid)}")
     return key
 
 
@@ -153,7 +149,7 @@ def _explain(error: Exception, keys: list[str]) -> str:
 
 def _unknown_key(key: str) -> str:
     """What is wrong with a key, and the valid ones; empty if it is in the default config."""
-    data: Any = to_dict(load([]))
+    data: Any = _defaults()
     parts = key.split(".")
     for depth, part in enumerate(parts):
         inner = _member(data, part)
@@ -163,6 +159,11 @@ def _unknown_key(key: str) -> str:
             return f"unknown key {key!r}; valid keys{' under ' + where if where else ''}: {keys}"
         data = inner
     return ""
+
+
+@cache
+def _defaults() -> dict[str, Any]:
+    return to_dict(load([]))
 
 
 _NOTHING = object()

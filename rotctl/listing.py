@@ -20,6 +20,13 @@ def conf_dir() -> Path:
     raise InputError(f"no conf/config.yaml in {package} or beside it; reinstall rotctl")
 
 
+def choices(group: str) -> list[str]:
+    """The choices of a config group, sorted; empty if there is no such group."""
+    if not group.isidentifier():
+        return []
+    return sorted(path.stem for path in (conf_dir() / group).glob("*.yaml"))
+
+
 def groups() -> dict[str, dict[str, str]]:
     """Config groups to their choices to a line of description each, sorted.
 

@@ -4,7 +4,7 @@ import pytest
 
 from rotctl import listing
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, groups
+from rotctl.listing import choices, conf_dir, groups
 
 
 def test_every_group_of_the_issue_is_listed():
@@ -21,6 +21,13 @@ def test_every_choice_has_one_line_of_description():
             assert description, f"{group}={choice}"
             assert "\n" not in description
             assert len(description) < 120, f"{group}={choice}"
+
+
+def test_the_choices_of_one_group():
+    for group, described in groups().items():
+        assert choices(group) == list(described)
+    for no_group in ("seed", "nope", "", "..", "../conf/start", "/etc", "behaviour.poses"):
+        assert choices(no_group) == []
 
 
 @pytest.fixture

@@ -1,0 +1,376 @@
+"""The command line: what it prints where, its exit codes, and how it takes misuse and signals."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from rotctl import __version__
+from rotctl.cli import main
+from rotctl.log import RunLog
+
+RUN = ["run", "duration=0.5"]
+LONG = ["run", "duration=900"]
+COMMANDS = ("run", "render", "list", "show", "inspect", "bench")
+
+
+@pytest.fixture
+def cli(capsys):
+    """Calls the command line in this process: (exit code, stdout, stderr)."""
+
+    def call(*arguments):
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as stop:  # argparse's way
+            code = stop.code
+        return (code, *capsys.readouterr())
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A short run: its folder of runs, its row, and its log."""
+    out = tmp_path_factory.mktemp("made")
+    assert main([*RUN, "--out", str(out), "--quiet"]) == 0
+    (folder,) = out.iterdir()
+    return out, json.loads((folder / "summary.json").read_text()), folder / "run.h5"
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "rotctl", *map(str, arguments)]
+
+
+def shell(*arguments, **settings):
+    return subprocess.run(
+        command(*arguments), capture_output=True, text=True, timeout=120, **settings
+    )
+
+
+# ---------------------------------------------------------------- run
+
+
+def test_from_another_folder_json_is_all_there_is_on_stdout(tmp_path):
+    finished = shell(*RUN, "seed=3", "--out", "my runs/ü", "--json", cwd=tmp_path)
+    assert finished.returncode == 0
+    assert finished.stdout.count("\n") == 1
+    row = json.loads(finished.stdout)
+    assert row["seed"] == 3
+    assert finished.stderr == ""
+    folder = tmp_path / "my runs" / "ü" / row["run_id"]
+    assert json.loads((folder / "summary.json").read_text()) == row
+    assert os.listdir(tmp_path) == ["my runs"]
+    RunLog.open(folder / "run.h5").verify()
+
+
+def test_a_second_identical_run_is_reported_and_force_redoes_it(cli, tmp_path):
+    out = tmp_path
+    row = json.loads(cli(*RUN, "--out", out, "--json")[1])
+    (log,) = out.glob("*/run.h5")
+    before = log.stat().st_mtime_ns
+    code, stdout, stderr = cli(*RUN, "--out", out, "--json")
+    assert (code, json.loads(stdout)) == (0, row)
+    assert stderr == f"already there, not redone (--force redoes it): {log.parent}\n"
+    assert log.stat().st_mtime_ns == before
+    code, stdout, stderr = cli(*RUN, "--out", out, "--json", "--force")
+    assert (code, stderr) == (0, "")
+    assert log.stat().st_mtime_ns > before
+
+
+def test_quiet_prints_nothing(cli, made, tmp_path):
+    assert cli(*RUN, "--out", made[0], "--quiet") == (0, "", "")
+    assert cli(*RUN, "--out", tmp_path, "--quiet") == (0, "", "")
+
+
+def test_a_person_gets_a_readable_summary_and_the_path_of_the_log(cli, made):
+    out, row, log = made
+    code, stdout, _ = cli(*RUN, "--out", out)
+    lines = stdout.splitlines()
+    assert code == 0
+    assert lines[0] == f"forward_roll_1  seed 0  run {row['run_id']}  success"
+    assert lines[-1] == f"log        {log}"
+    assert "commanded 1.30" in stdout
+    assert "0 solver failures" in stdout
+
+
+def test_a_damaged_log_is_redone_and_said(cli, tmp_path):
+    cli(*RUN, "--out", tmp_path, "--quiet")
+    (log,) = tmp_path.glob("*/run.h5")
+    os.truncate(log, 1000)
+    code, stdout, stderr = cli(*RUN, "--out", tmp_path, "--json")
+    assert code == 0
+    assert stderr == (
+        f"simulated again, the log there could not be used: {log}: truncated or damaged HDF5 file\n"
+    )
+    RunLog.open(log).verify()
+
+
+def test_a_breakdown_is_exit_code_1_and_a_row(cli, tmp_path):
+    arguments = ("run", "duration=1", "start.speed_x=[1e12,1e12]", "--out", tmp_path)
+    for _ in range(2):  # simulated, then reported
+        code, stdout, _ = cli(*arguments, "--json")
+        row = json.loads(stdout, parse_constant=lambda constant: pytest.fail(constant))
+        assert (code, row["success"], row["speed_mean"]) == (1, False, None)
+    code, stdout, _ = cli(*arguments)
+    assert code == 1
+    assert "FAILED: physics broke down at t = 0.00 s: MuJoCo warns: velocity" in stdout
+    assert "speed        - m/s (commanded 1.20)" in stdout
+
+
+def test_a_roll_that_stalls_is_a_result(cli, tmp_path):
+    code, stdout, _ = cli(
+        "run", "duration=2", "start=rest", "behaviour.angular_velocity=0", "behaviour.speed=0",
+        "criteria.stall_time=0.1", "--out", tmp_path, "--json",
+    )  # fmt: skip
+    row = json.loads(stdout)
+    assert (code, row["success"]) == (0, False)
+    assert row["failure_reason"].startswith("stalled for ")
+
+
+def test_overrides_and_options_may_be_mixed(cli, made):
+    out, row, _ = made
+    for arguments in (
+        ["run", "--out", out, "--json", "seed=0", "duration=0.5"],
+        ["run", "duration=0.5", "--out", out, "seed=0", "--json"],
+        ["run", "duration=9", "--json", "seed=0", "--out", out, "duration=0.5"],
+    ):
+        code, stdout, _ = cli(*arguments)
+        assert (code, json.loads(stdout)) == (0, row)
+
+
+# ---------------------------------------------------------------- bad input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ([*RUN, "controller.solver=foo"], "rotctl: controller.solver='foo' is unknown; valid: "
+         "boxqp, osqp, qpsolvers:<name> (for example qpsolvers:daqp)"),
+        ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: rest, symmetric, '
+         "tucked"),
+        ([*RUN, "seed=1,2"], "rotctl: override 'seed=1,2': run takes one value for seed; "
+         "start one run for each"),
+        ([*RUN, "seed"], "rotctl: override 'seed' has no '='; write key=value, such as seed=3"),
+        ([*RUN, "--out", ""], "rotctl run: argument --out: the name is empty; "
+         "see rotctl run --help"),
+        ([*RUN, "--frce"], "rotctl run: unrecognized arguments: --frce; see rotctl run --help"),
+        ([*RUN, "--forc"], "rotctl run: unrecognized arguments: --forc; see rotctl run --help"),
+        (["list", "x"], "rotctl list: unrecognized arguments: x; see rotctl list --help"),
+        ([], "rotctl: the following arguments are required: COMMAND; see rotctl --help"),
+        (["inspect"], "rotctl inspect: the following arguments are required: RUN.h5; "
+         "see rotctl inspect --help"),
+        (["bench", "--repeats", "0"], "rotctl: --repeats=0: must be at least 1"),
+        (["inspect", "nothing.h5"], "rotctl: nothing.h5: no such file"),
+        (["inspect", "x" * 300], f"rotctl: {'x' * 300}: no such file"),
+        (["inspect", "."], "rotctl: .: is a folder; name the log in it, such as run.h5"),
+        (["render", "nothing.h5", "--filmstrip", "x.png"], "rotctl: nothing.h5: no such file"),
+        (["render", ".", "--filmstrip", "x.png"], "rotctl: .: is a folder; name the log in it, "
+         "such as run.h5"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_line_and_exit_code_2(cli, tmp_path, monkeypatch, arguments, message):
+    monkeypatch.chdir(tmp_path)
+    assert cli(*arguments) == (2, "", message + "\n")
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_unknown_command_is_answered_with_the_known_ones(cli):
+    code, stdout, stderr = cli("rol")
+    assert (code, stdout) == (2, "")
+    assert stderr.count("\n") == 1
+    assert all(name in stderr for name in COMMANDS)
+
+
+def test_a_file_where_the_folder_should_be(cli, tmp_path):
+    (tmp_path / "file").write_text("")
+    code, stdout, stderr = cli(*RUN, "--out", tmp_path / "file", "--json")
+    assert (code, stdout) == (2, "")
+    assert stderr.startswith(f"rotctl: cannot write {tmp_path / 'file'}/")
+    assert stderr.endswith(": Not a directory\n")
+
+
+def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path):
+    def little_room():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+
+    finished = shell(*RUN, "--out", tmp_path / "out", "--json", preexec_fn=little_room)
+    assert (finished.returncode, finished.stdout) == (2, "")
+    assert finished.stderr.startswith(f"rotctl: cannot write {tmp_path / 'out'}/")
+    assert finished.stderr.endswith("/run.h5: File too large\n")
+    assert os.listdir(tmp_path / "out") == []
+
+
+# ---------------------------------------------------------------- signals and pipes
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_leaves_nothing_and_exits_with_130(number, tmp_path):
+    process = _started(tmp_path)
+    process.send_signal(number)
+    stdout, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert stdout == ""
+    assert stderr == "rotctl: interrupted; an unfinished run leaves no log\n"
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_killed_run_leaves_no_log(tmp_path):
+    process = _started(tmp_path)
+    process.kill()
+    process.communicate(timeout=60)
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
+
+
+def _started(out):
+    """A long run in another process, seen to have begun."""
+    process = subprocess.Popen(
+        command(*LONG, "--out", out, "--json"),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell may have started us with SIGINT ignored, which children inherit.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    end = time.monotonic() + 60
+    while not os.listdir(out) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.02)
+    assert process.poll() is None
+    return process
+
+
+def test_signals_mean_again_what_they_meant(cli):
+    before = signal.getsignal(signal.SIGTERM)
+    assert cli("list")[0] == 0
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_a_reader_that_has_seen_enough_is_no_error():
+    process = subprocess.Popen(command("show"), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    assert process.stderr.read() == b""
+    assert process.wait(timeout=60) == 0
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
+def test_a_full_stdout_is_one_line():
+    with open("/dev/full", "w") as full:
+        finished = subprocess.run(
+            command("list"), stdout=full, stderr=subprocess.PIPE, text=True, timeout=60
+        )
+    assert finished.returncode == 2
+    assert finished.stderr == "rotctl: output: No space left on device\n"
+
+
+def test_a_closed_stdout_is_no_error():
+    finished = subprocess.run(
+        command("list"),
+        stderr=subprocess.PIPE,
+        text=True,
+        timeout=60,
+        preexec_fn=lambda: os.close(1),
+    )
+    assert (finished.returncode, finished.stderr) == (0, "")
+
+
+def test_any_path_can_be_printed(tmp_path):
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "1"}
+    finished = shell(*RUN, "--out", "ü", cwd=tmp_path, env=environment)
+    assert finished.returncode == 0
+    assert "log        \\xfc/" in finished.stdout
+
+
+# ---------------------------------------------------------------- help, list, show, inspect
+
+
+def test_help_needs_no_heavy_import():
+    script = (
+        "import sys; from rotctl.cli import main\n"
+        "try: main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'mujoco', 'numpy', 'hydra', 'h5py', 'pydantic', 'tqdm', 'yaml', 'scipy'}\n"
+        "sys.exit(', '.join(heavy & set(sys.modules)) or 0)\n"
+    )
+    finished = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60
+    )
+    assert (finished.returncode, finished.stderr) == (0, "")
+    assert "exit codes: 0 simulated" in finished.stdout
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_each_command_has_a_help_that_says_what_it_does(cli, name):
+    code, stdout, stderr = cli(name, "--help")
+    assert (code, stderr) == (0, "")
+    paragraphs = stdout.split("\n\n")
+    assert paragraphs[0].startswith(f"usage: rotctl {name} ")
+    assert len(paragraphs[1]) > 40  # its description
+    assert cli("--help")[1].count(f"\n    {name} ") == 1
+
+
+def test_version(cli):
+    assert cli("--version") == (0, f"rotctl {__version__}\n", "")
+
+
+def test_list_has_every_group_and_choice_with_its_description(cli):
+    code, stdout, stderr = cli("list")
+    assert (code, stderr) == (0, "")
+    lines = stdout.splitlines()
+    assert lines[0] == "behaviour"
+    assert lines[1].startswith("  forward_roll_1  ")
+    for group in ("character", "controller", "physics", "start", "terrain"):
+        assert group in lines
+    assert all(line.strip().count("  ") for line in lines if line.startswith("  "))
+
+
+def test_show_prints_the_config_as_yaml(cli):
+    import yaml
+
+    code, stdout, stderr = cli("show", "seed=7", "start=rest")
+    assert (code, stderr) == (0, "")
+    data = yaml.safe_load(stdout)
+    assert data["seed"] == 7
+    assert data["start"]["name"] == "rest"
+
+
+def test_inspect_shows_everything_and_checks_it(cli, made):
+    out, row, log = made
+    code, stdout, stderr = cli("inspect", log)
+    assert (code, stderr) == (0, "")
+    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 1\n")
+    for text in ("trajectory/qpos", "[kg m2/s]", "outcome", "success", "git_commit", "machine"):
+        assert text in stdout
+    assert stdout.endswith("\nintegrity  complete, checksums match\n")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (lambda log: log[:5000], "truncated or damaged HDF5 file"),
+        (lambda log: b"time,x\n0,1\n", "not an HDF5 file"),
+        (lambda log: b"", "not an HDF5 file"),
+    ],
+)
+def test_inspect_refuses_what_is_no_log(cli, made, tmp_path, content, reason):
+    path = tmp_path / "x.h5"
+    path.write_bytes(content(made[2].read_bytes()))
+    assert cli("inspect", path) == (2, "", f"rotctl: {path}: {reason}\n")
+
+
+def test_inspect_refuses_a_foreign_hdf5(cli, tmp_path):
+    import h5py
+
+    path = tmp_path / "x.h5"
+    with h5py.File(path, "w") as file:
+        file["a"] = 1
+    message = f"rotctl: {path}: not a rotctl log (no schema_version)\n"
+    assert cli("inspect", path) == (2, "", message)
+
+
+def test_nothing_from_a_shell_or_a_file_steers_the_terminal(cli, tmp_path):
+    assert cli("inspect", "\x1b[31m.h5") == (2, "", "rotctl: ?[31m.h5: no such file\n")
