@@ -43,13 +43,14 @@ class Poisoned(Broken):
 def with_solvers(world, monkeypatch):
     """A controller whose solvers of these names are replaced."""
 
-    def make(**solvers):
+    def make(strength=1.0, **solvers):
+        model = replace(world.model, torque_limit=strength * world.model.torque_limit)
         found = {**solvers}
         monkeypatch.setattr(
             controller, "make_solver", lambda name: found.get(name) or make_solver(name)
         )
         chosen = next(iter(found))
-        return Controller(world.model, replace(world.settings, solver=chosen))
+        return Controller(model, replace(world.settings, solver=chosen))
 
     return make
 
@@ -274,8 +275,8 @@ def test_a_failure_in_the_second_pass_falls_back_too(world, supported, with_solv
 
 @pytest.mark.parametrize("kind", [Broken, Poisoned])
 def test_when_all_fail_the_pose_is_tracked(world, supported, with_solvers, kind):
-    chosen = with_solvers(osqp=kind("osqp"), boxqp=kind("boxqp", "bounds"))
-    limit, clipped = world.model.torque_limit, 0
+    chosen = with_solvers(0.2, osqp=kind("osqp"), boxqp=kind("boxqp", "bounds"))
+    limit, clipped = 0.2 * world.model.torque_limit, 0
     for step in supported[::10]:
         decision = decide(world, chosen, step)
         a, b = pose_torques(world, step)
@@ -310,7 +311,7 @@ def test_iterations_count_every_pass(world, supported, with_solvers):
     several = 0
     for step in supported[::5]:
         solver = Counting("osqp")
-        decision = decide(world, with_solvers(osqp=solver), step)
+        decision = decide(world, with_solvers(0.2, osqp=solver), step)
         assert decision.iterations == 10 * solver.calls
         several = max(several, solver.calls)
     assert several >= 3

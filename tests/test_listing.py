@@ -16,8 +16,8 @@ def test_every_group_of_the_issue_is_listed():
 
 
 def test_every_choice_has_one_line_of_description():
-    for group, choices in groups().items():
-        for choice, description in choices.items():
+    for group, described in groups().items():
+        for choice, description in described.items():
             assert description, f"{group}={choice}"
             assert "\n" not in description
             assert len(description) < 120, f"{group}={choice}"

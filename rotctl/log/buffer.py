@@ -100,12 +100,13 @@ class TrajectoryBuffer:
         return _from_arrays(rows, list(self.events))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Returns schema path -> array, events included; the model's text is not ours."""
+        """Returns schema path -> array in schema order; the model's text is not ours."""
         times = np.array([time for time, _ in self.events], dtype=SCHEMA["events/time"].dtype)
         texts = np.array(
             [_event_bytes(text) for _, text in self.events], dtype=SCHEMA["events/text"].dtype
         )
-        return {**self._allocated(), "events/time": times, "events/text": texts}
+        arrays = {**self._allocated(), "events/time": times, "events/text": texts}
+        return {name: arrays[name] for name in SCHEMA if name in arrays}
 
     def _allocated(self) -> dict[str, NDArray[Any]]:
         return {name: _array(self, name) for name in _ALLOCATED}
