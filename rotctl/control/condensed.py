@@ -13,6 +13,8 @@ as variables with the limits as bounds, and starts from there. A solver that kno
 alone gets each contact force as a non-negative sum of the friction pyramid's four edges.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotctl.control.answer import Answer
@@ -33,7 +35,9 @@ def solve(terms: Terms, solver: Solver) -> Answer:
     if not answer.solution.solved or within.all():
         return answer
     held = np.clip(answer.torque, -terms.torque_limit, terms.torque_limit)
-    return _full(terms, solver, np.concatenate((held, answer.solution.x)))
+    full = _full(terms, solver, np.concatenate((held, answer.solution.x)))
+    iterations = answer.solution.iterations + full.solution.iterations
+    return replace(full, solution=replace(full.solution, iterations=iterations))
 
 
 def _reduced(terms: Terms, solver: Solver) -> Answer:

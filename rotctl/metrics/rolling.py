@@ -90,13 +90,21 @@ def measure(
         revolutions=float(direction * (angle[-1] - angle[0])),
         angular_velocity_mean=float((angle[-1] - angle[first]) / elapsed),
         speed_mean=float((com[-1, 0] - com[first, 0]) / elapsed),
-        heading_error_end=float(np.median(heading)),
+        heading_error_end=_median_angle(heading),
         lateral_drift=float(np.abs(com[:, 1] - com[0, 1]).max()),
         longest_stall=stall,
         stalled_at=stalled_at,
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=int(np.count_nonzero(np.asarray(log["solver/status"]) == 2)),
     )
+
+
+def _median_angle(degrees: NDArray[np.float64]) -> float:
+    """Median about the mean direction, in (-180, 180]: +179 and -179 do not make 0."""
+    turn = np.radians(degrees)
+    centre = np.degrees(np.arctan2(np.sin(turn).sum(), np.cos(turn).sum()))
+    median = centre + np.median((degrees - centre + 180.0) % 360.0 - 180.0)
+    return float(180.0 - (180.0 - median) % 360.0)
 
 
 def longest_stall(

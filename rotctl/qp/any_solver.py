@@ -1,11 +1,12 @@
 """Any solver that the qpsolvers package knows: `qpsolvers:daqp`, `qpsolvers:piqp`, ..."""
 
 import warnings
+from typing import Any
 
 import numpy as np
 
 from rotctl.errors import InputError
-from rotctl.qp.problem import Problem, Shape, Solution, failed
+from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.rotations import Array
 
 TOLERANCE = 1e-5  # accepted relative residual [-]
@@ -41,6 +42,9 @@ class AnySolver:
 
     def solve(self, problem: Problem, start: Array | None) -> Solution:
         """Solve, cold; `start` is ignored. See `Solver`."""
+        reason = objection(problem)
+        if reason:
+            return failed(problem, f"{self.name}: {reason}")
         equal = problem.low == problem.high
         above = ~equal & (problem.high < LARGEST)
         below = ~equal & (problem.low > -LARGEST)
@@ -53,8 +57,8 @@ class AnySolver:
             limits if len(rows) else None,
             problem.G[equal] if equal.any() else None,
             problem.low[equal] if equal.any() else None,
-            np.maximum(problem.lower, -LARGEST),
-            np.minimum(problem.upper, LARGEST),
+            problem.lower,
+            problem.upper,
         )
         try:
             with warnings.catch_warnings():
@@ -64,7 +68,16 @@ class AnySolver:
             return failed(problem, f"{self.name}: {error}")
         if not answer.found or answer.x is None or not np.isfinite(answer.x).all():
             return failed(problem, f"{self.name} found no solution")
-        residual = problem.violation(answer.x) / (1.0 + float(np.abs(answer.x).max(initial=0.0)))
+        residual = self._residual(problem, answer)
         if not residual <= TOLERANCE:
             return failed(problem, f"{self.name}: residual {residual:.1e} exceeds {TOLERANCE:.0e}")
         return Solution(answer.x, True, 0, residual)
+
+    @staticmethod
+    def _residual(problem: Problem, answer: Any) -> float:
+        """Largest of the primal and dual residuals and the duality gap, all relative."""
+        x = answer.x
+        primal = problem.violation(x) / (1.0 + float(np.abs(x).max(initial=0.0)))
+        dual = answer.dual_residual() / (1.0 + float(np.abs(problem.f).max(initial=0.0)))
+        gap = answer.duality_gap() / (1.0 + abs(float(x @ problem.H @ x)))
+        return float(np.max([primal, dual, gap]))

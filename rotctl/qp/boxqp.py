@@ -1,9 +1,11 @@
 """MuJoCo's own box-constrained solver: projected Newton on the free variables, exact."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 
-from rotctl.qp.problem import Problem, Shape, Solution, failed
+from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.rotations import Array
 
 # Added to the unit diagonal of the scaled Hessian. Four generators span a contact's three
@@ -25,19 +27,25 @@ class BoxQP:
 
     def solve(self, problem: Problem, start: Array | None) -> Solution:
         """Solve a problem without rows; see `Solver`."""
-        if not np.isfinite(problem.H.sum() + problem.f.sum()):
-            return failed(problem, "the problem has numbers that are not finite")
+        reason = objection(problem)
+        if reason:
+            return failed(problem, reason)
         solution = _try(problem, start, DIAGONAL)
         for diagonal in LADDER:
             if solution.solved:
                 break
             solution = _try(problem, _try(problem, start, diagonal).x, DIAGONAL)
-        return solution
+        if not solution.solved:
+            return solution
+        # One proximal step: the addition now holds x near the solution, not near zero.
+        pull = DIAGONAL * (problem.H.diagonal() + 1e-12) * solution.x
+        refined = _try(replace(problem, f=problem.f - pull), solution.x, DIAGONAL)
+        return refined if refined.solved else solution
 
 
 def _try(problem: Problem, start: Array | None, diagonal: float) -> Solution:
     n = len(problem.f)
-    scale = 1.0 / np.sqrt(problem.H.diagonal() + 1e-12)
+    scale = 1.0 / np.sqrt(np.maximum(problem.H.diagonal(), 0.0) + 1e-12)
     H = problem.H * scale * scale[:, None]
     H.flat[:: n + 1] += diagonal
     f = problem.f * scale

@@ -12,7 +12,7 @@ import numpy as np
 import osqp
 import scipy.sparse as sparse
 
-from rotctl.qp.problem import Problem, Shape, Solution, failed
+from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.rotations import Array
 
 EPSILON = 1e-5  # absolute and relative tolerance of the scaled problem [-]
@@ -45,9 +45,10 @@ class Osqp:
     def solve(self, problem: Problem, start: Array | None) -> Solution:
         """Solve, cold; `start` is ignored. See `Solver`."""
         n, k = len(problem.f), len(problem.low)
-        if not np.isfinite(problem.H.sum() + problem.f.sum()):
-            return failed(problem, "the problem has numbers that are not finite")
-        scale = 1.0 / np.sqrt(problem.H.diagonal() + 1e-12)
+        reason = objection(problem)
+        if reason:
+            return failed(problem, reason)
+        scale = 1.0 / np.sqrt(np.maximum(problem.H.diagonal(), 0.0) + 1e-12)
         cost = 1.0 / max(float(np.abs(problem.f * scale).max(initial=0.0)), 1e-12)
         P = problem.H * scale * scale[:, None] * cost
         q = problem.f * scale * cost
@@ -57,7 +58,10 @@ class Osqp:
         low = np.concatenate((problem.lower / scale, problem.low * length))
         high = np.concatenate((problem.upper / scale, problem.high * length))
         low, high = np.maximum(low, -LARGEST), np.minimum(high, LARGEST)
-        result = self._run(n, k, P, q, A, low, high)
+        try:
+            result = self._run(n, k, P, q, A, low, high)
+        except osqp.OSQPException as error:  # such as a Hessian that is not convex
+            return failed(problem, f"OSQP: {error}")
         iterations = int(result.info.iter)
         if result.info.status_val != osqp.SolverStatus.OSQP_SOLVED:
             return failed(problem, f"OSQP: {result.info.status}", iterations)

@@ -40,7 +40,7 @@ class Problem:
         gaps = np.concatenate(
             (self.lower - x, x - self.upper, self.low - product, product - self.high)
         )
-        return float(max(0.0, gaps.max(initial=0.0)))
+        return float(gaps.max(initial=0.0))  # nan, not 0, if anything is nan
 
 
 @dataclass(frozen=True)
@@ -82,6 +82,16 @@ def without_rows(H: Array, f: Array, lower: Array, upper: Array) -> Problem:
     """A problem whose only constraints are bounds."""
     none = np.empty(0)
     return Problem(H, f, lower, upper, np.empty((0, len(f))), none, none)
+
+
+def objection(problem: Problem) -> str:
+    """Why no solver can be asked; empty if the problem is well posed."""
+    finite = problem.H.sum() + problem.f.sum() + problem.G.sum()
+    if not np.isfinite(finite):
+        return "the problem has numbers that are not finite"
+    if not ((problem.lower <= problem.upper).all() and (problem.low <= problem.high).all()):
+        return "the problem has limits that cross or are not numbers"
+    return ""
 
 
 def failed(problem: Problem, reason: str, iterations: int = 0) -> Solution:
