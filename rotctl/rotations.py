@@ -1,4 +1,10 @@
-"""Quaternions (w, x, y, z) and rotation vectors, as plain numpy functions."""
+"""Quaternions (w, x, y, z) and rotation vectors, as plain numpy functions.
+
+The arithmetic is on Python's numbers: for three or four of them that is several times
+faster than numpy.
+"""
+
+from math import atan2, cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,17 +14,18 @@ Array = NDArray[np.float64]
 
 def quaternion_from_rotation_vector(vector: Array) -> Array:
     """Unit quaternion (4,) of a rotation vector (3,) [rad]."""
-    angle = float(np.sqrt(vector @ vector))
+    x, y, z = vector.tolist()
+    angle = sqrt(x * x + y * y + z * z)
     if angle < 1e-12:
         return np.array([1.0, 0.0, 0.0, 0.0])
-    half = 0.5 * angle
-    return np.concatenate(([np.cos(half)], (np.sin(half) / angle) * vector))
+    scale = sin(0.5 * angle) / angle
+    return np.array([cos(0.5 * angle), scale * x, scale * y, scale * z])
 
 
 def multiply(left: Array, right: Array) -> Array:
     """Hamilton product of two quaternions (4,): first `right`, then `left`."""
-    w, x, y, z = left
-    a, b, c, d = right
+    w, x, y, z = left.tolist()
+    a, b, c, d = right.tolist()
     return np.array(
         [
             w * a - x * b - y * c - z * d,
@@ -31,15 +38,23 @@ def multiply(left: Array, right: Array) -> Array:
 
 def rotate(quaternion: Array, vector: Array) -> Array:
     """Rotate a vector (3,) by a unit quaternion (4,)."""
-    w, axis = quaternion[0], quaternion[1:]
-    twice = 2.0 * cross(axis, vector)
-    return np.asarray(vector + w * twice + cross(axis, twice))
+    w, x, y, z = quaternion.tolist()
+    a, b, c = vector.tolist()
+    # v + w t + q x t with t = 2 q x v
+    ta, tb, tc = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
+    return np.array(
+        [
+            a + w * ta + y * tc - z * tb,
+            b + w * tb + z * ta - x * tc,
+            c + w * tc + x * tb - y * ta,
+        ]
+    )
 
 
 def advance(quaternion: Array, rotation_vector: Array) -> Array:
     """Turn a unit quaternion (4,) by a world-frame rotation vector (3,) [rad]."""
     turned = multiply(quaternion_from_rotation_vector(rotation_vector), quaternion)
-    return np.asarray(turned / np.sqrt(turned @ turned))
+    return np.asarray(turned / sqrt(turned @ turned))
 
 
 def rotation_between(start: Array, end: Array) -> Array:
@@ -48,14 +63,14 @@ def rotation_between(start: Array, end: Array) -> Array:
     For opposite vectors the axis is undetermined and zero is returned.
     """
     axis = cross(start, end)
-    sine = float(np.sqrt(axis @ axis))
+    sine = sqrt(axis @ axis)
     if sine < 1e-12:
         return np.zeros(3)
-    return np.asarray(axis * (np.arctan2(sine, start @ end) / sine))
+    return np.asarray(axis * (atan2(sine, start @ end) / sine))
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Cross product of two vectors (3,); numpy's own is ten times slower on three numbers."""
-    ax, ay, az = a
-    bx, by, bz = b
+    """Cross product of two vectors (3,)."""
+    ax, ay, az = a.tolist()
+    bx, by, bz = b.tolist()
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])

@@ -22,6 +22,7 @@ from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
+UPRIGHT = np.zeros(3)  # phi_hat; in-plane it has no stiffness
 
 
 @validated(frozen=True, config=STRICT)
@@ -104,7 +105,7 @@ class Rolling:
         return Desired(
             com=state.momentum.com,
             com_velocity=self._velocity,
-            excursion_error=excursion.error(now, np.zeros(3), ROLLING_AXIS, self._name),
+            excursion_error=excursion.error(now, UPRIGHT, ROLLING_AXIS, self._name),
             angular_velocity=self._angular_velocity,
             pose_a=pose_a,
             pose_b=pose_b,

@@ -154,11 +154,12 @@ class CompiledStep:
         self._reading, self._wishes, self._answer = _Reading(), _Wishes(), _Answer()
         self._torque = np.zeros(model.mj.nu)
         self._answer.torque = self._torque.ctypes.data
+        constants = _constants(model, settings)
         self._self = found.rotctl_new(
             model.mj._address,
             self._scratch._address,
             ctypes.addressof(_functions()),
-            ctypes.addressof(_constants(model, settings)),
+            ctypes.addressof(constants),
         )
         if not self._self:
             raise MemoryError("no memory for the compiled control step")
@@ -277,6 +278,6 @@ def _constants(model: Model, settings: ControllerSettings) -> _Constants:
     for name in AXIS_GAINS:
         getattr(constants, name)[:] = getattr(settings.gains, name)
     constants.gravity[:] = model.gravity
-    for i, (body, weight) in enumerate(zip(model.trunk, model.trunk_weights, strict=True)):
+    for i, (body, weight) in enumerate(zip(model.trunk, model.trunk_weights[:, 0], strict=True)):
         constants.trunk[i], constants.trunk_weight[i] = int(body), float(weight)
     return constants

@@ -33,7 +33,8 @@ class PoseTracker:
     def torques(self, state: State, poses: Array) -> Array:
         """Torques (k, nu) [N m] towards poses (k, nu) [rad]."""
         h, mj, scratch = self._period, self._model.mj, self._scratch
-        inertia = state.mass_diagonal[ROOT_DOFS:] - self._model.armature
+        diagonal = self._model.diagonal[ROOT_DOFS:]
+        inertia = state.data.M[diagonal] - self._model.armature
         stiffness = self._gains.pose_stiffness * inertia
         damping = self._gains.pose_damping * inertia
         velocity = state.velocity[ROOT_DOFS:]
@@ -41,7 +42,7 @@ class PoseTracker:
         explicit = stiffness * (poses - predicted) - damping * velocity
         # (M + h Kd) qddot = explicit - C: same sparsity as M, so MuJoCo's factor serves.
         scratch.M[:] = state.data.M
-        scratch.M[self._model.diagonal[ROOT_DOFS:]] += h * damping
+        scratch.M[diagonal] += h * damping
         mujoco.mj_factorM(mj, scratch)
         force = np.repeat(-state.bias[None], len(poses), axis=0)
         force[:, ROOT_DOFS:] += explicit

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.control.settings import ControllerSettings, Weights
+from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.model import ROOT_DOFS, Model
 from rotctl.mechanics.momentum import contact_momentum_maps
 from rotctl.mechanics.state import State
@@ -120,7 +121,7 @@ def collect(
         torques: (2, nu) pose torques tau_a, tau_b.
         blend: gamma of the previous step.
     """
-    jacobian = state.contacts.jacobian[np.repeat(keep, 3)]
+    jacobian = contact_jacobian(model.mj, state.data, state.contacts)[np.repeat(keep, 3)]
     solved = state.solve_mass(model.mj, np.concatenate((jacobian, state.bias[None])))
     h = 1.0 / settings.rate
     weights = settings.weights

@@ -17,8 +17,6 @@ class Contacts:
         body: (m,) MuJoCo id of the character's body.
         position: (m, 3) world point [m].
         frame: (m, 3, 3) rows are normal (out of the ground) and two tangents, world axes.
-        jacobian: (3m, nv) rows N, T1, T2 of each contact: velocity of the body's point
-            along the frame's rows, per unit generalised velocity.
         row: (m,) first row of each contact in MuJoCo's constraint arrays.
         friction: (m, 2) the physics' friction coefficients along the two tangents [-].
     """
@@ -26,7 +24,6 @@ class Contacts:
     body: NDArray[np.int32]
     position: Array
     frame: Array
-    jacobian: Array
     row: NDArray[np.int64]
     friction: Array
 
@@ -39,33 +36,33 @@ class Contacts:
 def read_contacts(mj: mujoco.MjModel, data: mujoco.MjData) -> Contacts:
     """Contacts of the current position; call after `mj_step1` or `mj_forward`.
 
-    With an elliptic cone the rows of `efc_J` are exactly (N, T1, T2); with a pyramidal
-    cone each pair of opposite edges is N +- mu T, from which N and T follow exactly.
     Contacts of the character with itself are left out: control does not plan with them.
     """
-    nv = mj.nv
     contact = data.contact
     bodies = mj.geom_bodyid[contact.geom]  # (ncon, 2)
     chosen = np.flatnonzero((bodies == 0).any(axis=1) & (contact.efc_address >= 0))
-    body = bodies[chosen].max(axis=1)
-    row = contact.efc_address[chosen].astype(np.int64)
-    friction = contact.friction[chosen, :2]
-    rows = data.efc_J.reshape(-1, nv)
-    if mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC:
-        jacobian = rows[(row[:, None] + _THREE).ravel()]
-    else:
-        jacobian = _from_pyramid(rows, row, friction)
     # Where the character is the contact's first geom, MuJoCo's frame points into the
     # ground while its rows still measure separation: only the frame needs turning.
     sign = np.where(bodies[chosen, 0] > 0, -1.0, 1.0)
     return Contacts(
-        body=body,
+        body=bodies[chosen].max(axis=1),
         position=contact.pos[chosen],
         frame=contact.frame[chosen].reshape(-1, 3, 3) * sign[:, None, None],
-        jacobian=jacobian,
-        row=row,
-        friction=friction,
+        row=contact.efc_address[chosen].astype(np.int64),
+        friction=contact.friction[chosen, :2],
     )
+
+
+def contact_jacobian(mj: mujoco.MjModel, data: mujoco.MjData, contacts: Contacts) -> Array:
+    """Rows N, T1, T2 of each contact (3m, nv): its point's velocity along the frame's rows.
+
+    With an elliptic cone they are rows of `efc_J`; with a pyramidal cone each pair of
+    opposite edges is N +- mu T, from which N and T follow exactly.
+    """
+    rows = data.efc_J.reshape(-1, mj.nv)
+    if mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC:
+        return np.asarray(rows[(contacts.row[:, None] + _THREE).ravel()])
+    return _from_pyramid(rows, contacts.row, contacts.friction)
 
 
 def realised_forces(mj: mujoco.MjModel, data: mujoco.MjData, contacts: Contacts) -> Array:

@@ -11,7 +11,7 @@ the velocity of any one body, the integral drifts from the body slowly; it is pu
 the trunk's mean lateral axis with a time constant. In-plane, both are the plain integral.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -60,7 +60,7 @@ def integrate(
     orientation = advance(excursion.orientation, turn)
     drift = cross(rotate(orientation, rolling_axis), lateral_axis)
     pulled = advance(orientation, drift * min(1.0, period / correction_time))
-    return replace(excursion, angle=excursion.angle + turn, orientation=pulled)
+    return Excursion(angle=excursion.angle + turn, orientation=pulled)
 
 
 def error(excursion: Excursion, target: Array, rolling_axis: Array, name: ExcursionName) -> Array:

@@ -21,12 +21,9 @@ class State:
         velocity: (nv,) generalised velocity [m/s, rad/s].
         momentum: rotation indices and centre of mass.
         contacts: contacts with the ground.
-        bias: (nv,) C of M qddot + C = S' tau + J' lambda: Coriolis, centrifugal and
-            gravity forces less the joints' passive ones [N, N m].
-        mass_diagonal: (nv,) diagonal of M, the composite inertia about each dof.
         lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
-        data: the MuJoCo data behind all this, for products and solves with M. Its
-            arrays change when the physics steps: read it, keep nothing of it.
+        data: the MuJoCo data behind all this. What is read from it, and the properties
+            below, hold until the physics steps.
     """
 
     time: float
@@ -34,10 +31,16 @@ class State:
     velocity: Array
     momentum: Momentum
     contacts: Contacts
-    bias: Array
-    mass_diagonal: Array
     lateral_axis: Array
     data: mujoco.MjData
+
+    @property
+    def bias(self) -> Array:
+        """C of M qddot + C = S' tau + J' lambda (nv,) [N, N m].
+
+        Coriolis, centrifugal and gravity forces less the joints' passive ones.
+        """
+        return np.asarray(self.data.qfrc_bias - self.data.qfrc_passive)
 
     def solve_mass(self, mj: mujoco.MjModel, rows: Array) -> Array:
         """Rows of right-hand sides (k, nv) to rows of M^-1 rhs (k, nv)."""
@@ -55,8 +58,6 @@ def read(model: Model, data: mujoco.MjData) -> State:
         velocity=data.qvel.copy(),
         momentum=read_momentum(model.mj, data),
         contacts=read_contacts(model.mj, data),
-        bias=data.qfrc_bias - data.qfrc_passive,
-        mass_diagonal=data.M[model.diagonal],
         lateral_axis=axis / np.sqrt(axis @ axis),
         data=data,
     )

@@ -7,6 +7,7 @@ sides; joints not named are held at 0. A pose is clipped to the joints' ranges.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class PosePair:
 
     def at(self, phase: float) -> Array:
         """Both poses (2, nu) [rad] at a phase [rad]."""
-        poses = np.array([1.0, np.cos(phase), np.sin(phase)]) @ self.coefficients
+        poses = np.array([1.0, cos(phase), sin(phase)]) @ self.coefficients
         return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
 
 
