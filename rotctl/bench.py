@@ -13,7 +13,6 @@ import mujoco
 
 from rotctl.config import Config, load
 from rotctl.log import TrajectoryBuffer
-from rotctl.mechanics.state import read
 from rotctl.qp import Problem, Solution, Solver
 from rotctl.rotations import Array
 from rotctl.scenario import Scenario, build
@@ -115,7 +114,7 @@ def roll(scenario: Scenario) -> Split:
         t0 = time.perf_counter()
         stepper.evaluate(data)
         t1 = time.perf_counter()
-        state = read(model, data)
+        state = controller.read(data)
         now = behaviour.advance(now, state)
         t2 = time.perf_counter()
         before = clock.seconds

@@ -71,10 +71,7 @@ class _Constants(ctypes.Structure):
 
 class _Reading(ctypes.Structure):
     _fields_ = [
-        *(
-            (name, _double * 3)
-            for name in ("com", "com_velocity", "linear", "angular")
-        ),
+        *((name, _double * 3) for name in ("com", "com_velocity", "linear", "angular")),
         ("inertia", _double * 9),
         ("angular_velocity", _double * 3),
         ("rotation", _double * 9),
@@ -201,8 +198,8 @@ class CompiledStep:
             return None
         return State(
             time=data.time,
-            position=data.qpos,
-            velocity=data.qvel,
+            position=data.qpos.copy(),
+            velocity=data.qvel.copy(),
             momentum=self._momentum,
             contacts=Contacts(
                 body=self._body[:m],

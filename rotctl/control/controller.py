@@ -2,27 +2,34 @@
 
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.control import condensed, literal
 from rotctl.control.answer import Answer
+from rotctl.control.compiled import CompiledStep, library, serves
 from rotctl.control.decision import POSE_ONLY, SOLVED_BY_FALLBACK, Decision
 from rotctl.control.pose import PoseTracker
-from rotctl.control.settings import ControllerSettings
+from rotctl.control.settings import BackendName, ControllerSettings
 from rotctl.control.supervisor import RULES, Evidence
 from rotctl.control.targets import Desired, momentum_rates
 from rotctl.control.terms import Terms, collect
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.state import State
+from rotctl.mechanics.state import State, read
 from rotctl.qp import Solution, Solver, make_solver
 
+
 class Controller:
-    """Decides torques; keeps workspaces, but no memory of the past."""
+    """Reads the state and decides torques; keeps workspaces, but no memory of the past.
+
+    Attributes:
+        backend: `compiled` or `reference`, whichever really works here.
+    """
 
     def __init__(self, model: Model, settings: ControllerSettings) -> None:
-        """Make the solvers and the pose tracker.
+        """Make the solvers, the pose tracker and the compiled step.
 
         Raises:
             InputError: the solver does not exist here, or cannot solve the chosen form.
@@ -39,9 +46,26 @@ class Controller:
         self.chain: list[tuple[str, Solver]] = [(settings.form, solver)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
             self.chain.append(("condensed", make_solver("boxqp")))
+        compiled = settings.backend == "compiled" and serves(settings, model) and library()
+        self._step = CompiledStep(model, settings) if compiled else None
+        self.backend: BackendName = "compiled" if self._step else "reference"
+
+    def read(self, data: mujoco.MjData) -> State:
+        """The state in `data`, whose positions and contacts are up to date."""
+        state = self._step.read(data) if self._step else None
+        return read(self.model, data) if state is None else state
 
     def decide(self, state: State, desired: Desired, blend: float) -> Decision:
-        """Torques for one control period; `blend` is the previous step's gamma."""
+        """Torques for one control period, for the state read last.
+
+        Args:
+            blend: the previous step's gamma.
+        """
+        decision = self._step.decide(state, desired, blend) if self._step else None
+        return self._decide(state, desired, blend) if decision is None else decision
+
+    def _decide(self, state: State, desired: Desired, blend: float) -> Decision:
+        """The reference."""
         rates = momentum_rates(desired, state.momentum, self.model.mass, self.settings.gains)
         torques = self._tracker.torques(state, np.array((desired.pose_a, desired.pose_b)))
         candidates = ~self.model.excluded[state.contacts.body]

@@ -10,6 +10,7 @@ from rotctl.mechanics.excursion import ExcursionName
 from rotctl.settings import STRICT, NonNegative, NonNegativeVector, Positive
 
 FormName = Literal["condensed", "literal"]
+BackendName = Literal["compiled", "reference"]
 
 
 @validated(frozen=True, config=STRICT)
@@ -55,6 +56,8 @@ class ControllerSettings:
         rate: control steps a second [Hz].
         solver: `boxqp`, `osqp` or `qpsolvers:<name>`.
         form: `condensed` (torques and accelerations eliminated) or `literal` (eq. 2).
+        backend: `compiled` takes the C step where it serves (condensed boxqp) and is built;
+            `reference` is the same mathematics in numpy.
         supervisor: inclusion test for contacts, see `rotctl.control.supervisor`.
         excursion: how AE is measured, see `rotctl.mechanics.excursion`.
         correction_time: of the `oriented` excursion [s].
@@ -65,6 +68,7 @@ class ControllerSettings:
     rate: Annotated[Positive, Field(le=10_000)]
     solver: str
     form: FormName
+    backend: BackendName
     supervisor: SupervisorName
     thresholds: Thresholds
     excursion: ExcursionName

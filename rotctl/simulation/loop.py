@@ -11,7 +11,7 @@ from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
 from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.state import State, read
+from rotctl.mechanics.state import State
 from rotctl.rotations import Array
 from rotctl.simulation.start import Start, place
 from rotctl.simulation.stepping import Stepper
@@ -98,7 +98,7 @@ def simulate(
         if complaint:
             buffer.add_event(i / rate, complaint)
             return Outcome(buffer.trimmed(i), complaint, last_fallback)
-        state = read(model, data)
+        state = controller.read(data)
         now = behaviour.advance(now, state)
         decision = controller.decide(state, behaviour.desired(state, now), blend)
         blend = decision.blend
