@@ -42,6 +42,7 @@ class World:
                 f"duration={SECONDS:g}",
                 "controller.solver=boxqp",
                 "controller.form=condensed",
+                "controller.backend=reference",
                 f"controller.rate={RATE:g}",
                 "controller.supervisor=as_written",
                 "physics.substeps=4",

@@ -10,6 +10,7 @@ import qpsolvers
 from rotctl.control import condensed, literal
 from rotctl.control.answer import Answer
 from rotctl.control.settings import ControllerSettings
+from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.qp import Problem, make_solver
 from rotctl.qp.boxqp import BoxQP
 
@@ -332,7 +333,7 @@ def test_predicted_rates_come_true(world, supported):
         along = np.einsum("mij,mj->mi", frames, force.reshape(-1, 3))
         M = np.zeros((world.mj.nv, world.mj.nv))
         mujoco.mj_fullM(world.mj, state.data, M)
-        pushed = state.contacts.jacobian.T @ along.ravel()
+        pushed = contact_jacobian(world.mj, state.data, state.contacts).T @ along.ravel()
         pushed[6:] += step.decision.torque
         acceleration = np.linalg.solve(M, pushed - state.bias)
         measured = world.rates_by_difference(step.position, step.velocity, acceleration)

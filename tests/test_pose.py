@@ -112,7 +112,7 @@ def test_stable_at_60_hz_where_explicit_pd_is_not(floating, gains):
     tracker = PoseTracker(floating, gains, PERIOD)
 
     def explicit(state, pose):
-        inertia = state.mass_diagonal[6:] - floating.armature
+        inertia = state.data.M[floating.diagonal[6:]] - floating.armature
         error = pose - state.position[7:]
         return inertia * (gains.pose_stiffness * error - gains.pose_damping * state.velocity[6:])
 

@@ -243,6 +243,19 @@ static void pose_torques(Self* s, mjData* d, const Wishes* w) {
   }
 }
 
+// The scaled program in s->Hs, s->fs between its bounds, from and to s->x.
+static int minimise(Self* s, int n, double* residual) {
+  if (s->mj.boxQP(s->x, s->work, 0, s->Hs, s->fs, n, s->lower, s->upper) < 0) return FAILED;
+  double worst = 0, largest = 0;
+  for (int i = 0; i < n; i++) {
+    double step = s->x[i] - dot(s->Hs + i * n, s->x, n) - s->fs[i];
+    step = fmin(fmax(step, s->lower[i]), s->upper[i]) - s->x[i];
+    worst = fmax(worst, fabs(step)), largest = fmax(largest, fabs(s->x[i]));
+  }
+  *residual = worst / (1 + largest);
+  return *residual <= s->c.tolerance ? 1 : FAILED;
+}
+
 // One quadratic program [head, lambda, gamma] in s->H, s->f (n = head + 3m + 1), forces as
 // sums of pyramid edges; the start is in s->x if `warm`. Fills tau (head), force, gamma.
 static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* force,
@@ -289,15 +302,15 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
     s->x[i] = x < s->lower[i] ? s->lower[i] : x > s->upper[i] ? s->upper[i] : x;
   }
   if (!isfinite(check)) return FAILED;
-  if (s->mj.boxQP(s->x, s->work, 0, Hs, s->fs, n, s->lower, s->upper) < 0) return FAILED;
-  double worst = 0, largest = 0;
-  for (int i = 0; i < n; i++) {
-    double step = s->x[i] - dot(Hs + i * n, s->x, n) - s->fs[i];
-    step = (step < s->lower[i] ? s->lower[i] : step > s->upper[i] ? s->upper[i] : step) - s->x[i];
-    worst = fmax(worst, fabs(step)), largest = fmax(largest, fabs(s->x[i]));
+  if (minimise(s, n, residual) == FAILED) return FAILED;
+  // One proximal step: the addition to the diagonal now holds x near the solution.
+  double before = *residual;
+  memcpy(s->t1, s->x, sizeof(double) * n);
+  for (int i = 0; i < n; i++) s->fs[i] -= c->diagonal * s->x[i];
+  if (minimise(s, n, residual) == FAILED) {
+    memcpy(s->x, s->t1, sizeof(double) * n);
+    *residual = before;
   }
-  *residual = worst / (1 + largest);
-  if (!(*residual <= c->tolerance)) return FAILED;
   for (int i = 0; i < n; i++) s->x[i] *= scale[i];
   memcpy(tau, s->x, sizeof(double) * head);
   for (int k = 0; k < m; k++)

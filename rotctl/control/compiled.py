@@ -138,7 +138,7 @@ def serves(settings: ControllerSettings, model: Model) -> bool:
 
 
 class CompiledStep:
-    """Reads the state and decides torques; what it returns lives until the next call."""
+    """Reads the state and decides torques."""
 
     def __init__(self, model: Model, settings: ControllerSettings) -> None:
         """Hand the run's constants over; `library()` must be there."""
@@ -163,28 +163,14 @@ class CompiledStep:
         self._pointers = [
             ctypes.addressof(part) for part in (self._reading, self._wishes, self._answer)
         ]
-        reading = {name: _view(self._reading, name) for name, _ in _Reading._fields_[:-1]}
-        self._momentum = Momentum(
-            com=reading["com"],
-            com_velocity=reading["com_velocity"],
-            linear=reading["linear"],
-            angular=reading["angular"],
-            inertia=reading["inertia"].reshape(3, 3),
-            angular_velocity=reading["angular_velocity"],
-            root_rotation=reading["rotation"].reshape(3, 3),
-            root_offset=reading["offset"],
-        )
-        self._lateral_axis = reading["lateral_axis"]
-        self._position = reading["position"].reshape(CAPACITY, 3)
-        self._frame = reading["frame"].reshape(CAPACITY, 3, 3)
-        self._body, self._row = reading["body"], reading["row"]
-        self._friction = reading["friction"].reshape(CAPACITY, 2)
+        self._read = {name: _view(self._reading, name) for name, _ in _Reading._fields_[:-1]}
         wishes = ("com", "com_velocity", "excursion_error", "angular_velocity")
-        self._wished = [(_view(self._wishes, name), name) for name in wishes]
+        self._wished = [(name, _view(self._wishes, name)) for name in wishes]
         self._force = _view(self._answer, "force").reshape(CAPACITY, 3)
         self._used = _view(self._answer, "used").view(bool)
         self._rates_wanted = _view(self._answer, "rates_wanted")
         self._rates_predicted = _view(self._answer, "rates_predicted")
+        self._last: State | None = None
 
     def __del__(self) -> None:
         """Give the memory back."""
@@ -196,25 +182,42 @@ class CompiledStep:
         m = self._library.rotctl_read(self._self, data._address, self._pointers[0])
         if m == FAILED:
             return None
-        return State(
+        found = {name: view.copy() for name, view in self._read.items() if view.size <= 9}
+        self._last = State(
             time=data.time,
             position=data.qpos.copy(),
             velocity=data.qvel.copy(),
-            momentum=self._momentum,
-            contacts=Contacts(
-                body=self._body[:m],
-                position=self._position[:m],
-                frame=self._frame[:m],
-                row=self._row[:m],
-                friction=self._friction[:m],
+            momentum=Momentum(
+                com=found["com"],
+                com_velocity=found["com_velocity"],
+                linear=found["linear"],
+                angular=found["angular"],
+                inertia=found["inertia"].reshape(3, 3),
+                angular_velocity=found["angular_velocity"],
+                root_rotation=found["rotation"].reshape(3, 3),
+                root_offset=found["offset"],
             ),
-            lateral_axis=self._lateral_axis,
+            contacts=Contacts(
+                body=self._read["body"][:m].copy(),
+                position=self._read["position"][: 3 * m].reshape(m, 3).copy(),
+                frame=self._read["frame"][: 9 * m].reshape(m, 3, 3).copy(),
+                row=self._read["row"][:m].copy(),
+                friction=self._read["friction"][: 2 * m].reshape(m, 2).copy(),
+            ),
+            lateral_axis=found["lateral_axis"],
             data=data,
         )
+        return self._last
 
     def decide(self, state: State, desired: Desired, blend: float) -> Decision | None:
-        """Torques for the state read last; None where the reference has to take over."""
-        for view, name in self._wished:
+        """Torques; None where the reference has to take over.
+
+        That is where a solve fails, and for any state but the one that `read` read last,
+        as part of it is kept on the C side.
+        """
+        if state is not self._last:
+            return None
+        for name, view in self._wished:
             view[:] = getattr(desired, name)
         wishes, answer = self._wishes, self._answer
         wishes.blend = blend
@@ -224,12 +227,12 @@ class CompiledStep:
         if m == FAILED:
             return None
         return Decision(
-            torque=self._torque,
+            torque=self._torque.copy(),
             blend=answer.blend,
-            used=self._used[:m],
-            force=self._force[:m],
-            rates_wanted=self._rates_wanted,
-            rates_predicted=self._rates_predicted,
+            used=self._used[:m].copy(),
+            force=self._force[:m].copy(),
+            rates_wanted=self._rates_wanted.copy(),
+            rates_predicted=self._rates_predicted.copy(),
             status=0,
             fallback=0,
             iterations=0,

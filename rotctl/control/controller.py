@@ -56,9 +56,10 @@ class Controller:
         return read(self.model, data) if state is None else state
 
     def decide(self, state: State, desired: Desired, blend: float) -> Decision:
-        """Torques for one control period, for the state read last.
+        """Torques for one control period.
 
         Args:
+            state: best the one that `read` returned last; any other takes the reference.
             blend: the previous step's gamma.
         """
         decision = self._step.decide(state, desired, blend) if self._step else None
