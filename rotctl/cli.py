@@ -199,6 +199,7 @@ def _parser() -> argparse.ArgumentParser:
         description="Measure the split of a control step on the states of a real forward roll.",
     )
     bench.add_argument("--repeats", type=int, default=5, help="median over this many [%(default)s]")
+    bench.add_argument("--plot", type=Path, metavar="OUT.svg", help="plot cost against contacts")
     bench.set_defaults(command=_bench)
 
     for command in commands.choices.values():
@@ -223,13 +224,13 @@ def _run(arguments: argparse.Namespace) -> int:
         delay=0.2,
     ) as bar:
         result = run(config, arguments.out, arguments.force, bar.update)
-    if not arguments.quiet:
-        if result.already_there:
-            notice = f"already there, not redone (--force redoes it): {result.folder}"
-            print(notice, file=sys.stderr)
-        elif result.replaced:
-            notice = f"simulated again, the log there could not be used: {result.replaced}"
-            print(_one_line(notice), file=sys.stderr)
+    notices = [result.notice]
+    if result.already_there:
+        notices.append(f"already there, not redone (--force redoes it): {result.folder}")
+    if result.replaced:
+        notices.append(f"simulated again, the log there could not be used: {result.replaced}")
+    for notice in filter(None, notices if not arguments.quiet else []):
+        print(_one_line(notice), file=sys.stderr)
     picture = _filmstrip_beside(result.folder / LOG_NAME) if arguments.filmstrip else ""
     if arguments.json:
         import json
@@ -312,7 +313,8 @@ def _bench(arguments: argparse.Namespace) -> int:
 
     if arguments.repeats < 1:
         raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
-    print(bench(arguments.repeats))
+    for table in bench(arguments.repeats, arguments.plot):
+        print(table, end="\n\n", flush=True)
     return 0
 
 

@@ -34,12 +34,14 @@ class Result:
         summary: the summary row.
         already_there: True if nothing was simulated because the run was there.
         replaced: why the log that was there was not used; empty if it was, or there was none.
+        notice: what the user should know of how it was simulated; mostly empty.
     """
 
     folder: Path
     summary: Summary
     already_there: bool
     replaced: str = ""
+    notice: str = ""
 
     @property
     def broke_down(self) -> bool:
@@ -75,7 +77,8 @@ def run(
             replaced = str(error)
     with _writable(folder):
         summary = _simulated(scenario, folder, progress)
-    return Result(folder, summary, already_there=False, replaced=replaced)
+    notice = scenario.controller.notice
+    return Result(folder, summary, already_there=False, replaced=replaced, notice=notice)
 
 
 def _simulated(scenario: Scenario, folder: Path, progress: Callable[[], object]) -> Summary:
@@ -97,12 +100,14 @@ def _simulated(scenario: Scenario, folder: Path, progress: Callable[[], object])
     # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
     breakdown = outcome.breakdown or (f"MuJoCo warns: {warnings[0]}" if warnings else "")
     summary = summarise(scenario, outcome.buffer, breakdown, wall)
+    found = collect()
     write_run(
         folder / LOG_NAME,
         outcome.buffer,
         model_xml=scenario.model.mjcf,
         attributes={
-            **collect(),
+            **found,
+            "versions": {**found["versions"], "control_step": scenario.controller.backend},
             "config": to_yaml(config),
             "run_id": scenario.run_id,
             "seed": config.seed,

@@ -127,7 +127,7 @@ def test_random_damage_is_caught_or_harmless(path):
     before = {name: RunLog.open(path)[name] for name in SCHEMA}
     rng = np.random.default_rng(1)
     caught = 0
-    for offset in rng.integers(0, len(whole), 12):
+    for offset in rng.integers(0, len(whole), 60):
         path.write_bytes(whole)
         flip(path, offset)
         try:

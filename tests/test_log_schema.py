@@ -76,7 +76,7 @@ def test_a_good_layout_binds_the_sizes():
             "model/mjcf is larger than 16777216 bytes",
         ),
         (
-            {"trajectory__ctrl": (np.dtype("f8"), (5, 10**13))},
+            {"trajectory__qpos": (np.dtype("f8"), (5, 10**13))},
             "declares more than 2147483648 bytes of data",
         ),
     ],

@@ -1,1 +1,27 @@
 """Where the time goes. Ratios taken in one run mean something; bare times hardly do."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from rotctl.bench import scaling
+from rotctl.bench.solvers import compare
+from rotctl.bench.split import split
+from rotctl.bench.startup import processes
+
+STATES = 150  # for the comparison of solvers; literal OSQP takes tens of milliseconds on each
+
+
+def bench(repeats: int, picture: Path | None) -> Iterator[str]:
+    """All tables, one after the other as they are measured.
+
+    Args:
+        repeats: medians are over so many.
+        picture: where to plot the cost against contacts, or None.
+    """
+    yield split(repeats)
+    yield processes(repeats)
+    yield compare(STATES)
+    costs = scaling.measure()
+    yield scaling.table(costs)
+    if picture is not None:
+        scaling.plot(costs, picture)

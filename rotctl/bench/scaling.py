@@ -1,36 +1,77 @@
 """Cost of a control step against the number of contacts and of degrees of freedom."""
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 from rotctl.config import Config, load
 from rotctl.control import Controller, Desired
+from rotctl.errors import InputError
 from rotctl.mechanics import model as models
 from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
-CONTACTS = (0, 1, 2, 4, 8, 15, 22, 32)
+CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 22)
 HINGES = (29, 37, 46, 58)
+AT = 8  # contacts, where hinges vary
 TRIES = 60  # repeats of one decision; the least disturbed is taken
 
 
-def scale() -> str:
-    """Two tables: against contacts at 29 hinges, against hinges at about eight contacts."""
+@dataclass(frozen=True)
+class Cost:
+    """Microseconds of a control step with so many contacts and hinges."""
+
+    contacts: int
+    hinges: int
+    compiled: float
+    reference: float
+
+
+def measure() -> list[Cost]:
+    """Costs against contacts at the adult's hinges, then against hinges at `AT` contacts."""
     config = load([])
+    models_by_hinges = {hinges: _model(config, hinges) for hinges in HINGES}
+    settings = [(m, HINGES[0]) for m in CONTACTS] + [(AT, hinges) for hinges in HINGES]
+    return [Cost(m, n, *_times(config, models_by_hinges[n], m)) for m, n in settings]
+
+
+def table(costs: list[Cost]) -> str:
+    """The costs as text."""
     lines = ["microseconds a control step (state and both passes), least disturbed of many", ""]
-    lines.append(f"{'contacts':>10}{'compiled':>12}{'numpy':>12}")
-    model = _model(config, HINGES[0])
-    rows = [(m, *_times(config, model, m)) for m in CONTACTS]
-    lines += [f"{m:10d}{fast:12.0f}{slow:12.0f}" for m, fast, slow in rows]
-    lines += ["", f"{'hinges':>10}{'compiled':>12}{'numpy':>12}   at 8 contacts"]
-    for hinges in HINGES:
-        fast, slow = _times(config, _model(config, hinges), 8)
-        lines.append(f"{hinges:10d}{fast:12.0f}{slow:12.0f}")
+    lines.append(f"{'contacts':>10}{'hinges':>10}{'compiled':>12}{'numpy':>12}")
+    for c in costs:
+        lines.append(f"{c.contacts:10d}{c.hinges:10d}{c.compiled:12.0f}{c.reference:12.0f}")
     return "\n".join(lines)
+
+
+def plot(costs: list[Cost], out: Path) -> None:
+    """Cost against contacts, both axes logarithmic.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise InputError("--plot needs matplotlib: pip install matplotlib") from None
+    shown = [c for c in costs[: len(CONTACTS)] if c.contacts]
+    contacts = [c.contacts for c in shown]
+    figure = Figure(figsize=(6, 4), layout="constrained")
+    axes = figure.subplots()
+    axes.loglog(contacts, [c.reference for c in shown], "o-", color="#0072b2", label="numpy")
+    axes.loglog(contacts, [c.compiled for c in shown], "s-", color="#d55e00", label="compiled")
+    line = [shown[-1].compiled * m / contacts[-1] for m in contacts]
+    axes.loglog(contacts, line, ":", color="0.5", label="proportional to contacts")
+    axes.set_xticks(contacts, [str(m) for m in contacts])
+    axes.set_xlabel("contacts with the ground")
+    axes.set_ylabel("control step [us]")
+    axes.grid(which="both", alpha=0.2)
+    axes.legend()
+    figure.savefig(out)
 
 
 def _times(config: Config, model: Model, contacts: int) -> tuple[float, float]:

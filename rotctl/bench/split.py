@@ -11,7 +11,7 @@ from statistics import median
 
 import mujoco
 
-from rotctl.config import Config, load
+from rotctl.config import load
 from rotctl.log import TrajectoryBuffer
 from rotctl.qp import Problem, Solution, Solver
 from rotctl.rotations import Array
@@ -22,7 +22,7 @@ from rotctl.simulation.start import place
 SECONDS = 10.0  # simulated time of one repeat
 STAGES = ("physics", "kinematics", "assembly", "solve", "log")
 EXPLAINED = {
-    "physics": "MuJoCo's steps",
+    "physics": "MuJoCo's steps, and a look at its warnings",
     "kinematics": "reading state, contacts, momentum, excursion",
     "assembly": "targets, pose torques, matrices of both passes",
     "solve": "the quadratic programs of both passes",
@@ -65,35 +65,43 @@ class TimedSolver:
         return solution
 
 
-def bench(repeats: int) -> str:
-    """Measure and describe; medians over `repeats` rolls of each setting."""
-    columns = {n: _measure(load([f"physics.substeps={n}"]), repeats) for n in (1, 4)}
-    title = f"forward_roll_1, {SECONDS:g} s simulated, median of {repeats} rolls"
-    head = "".join(f"{n} substep{'' if n == 1 else 's':1}".rjust(12) for n in columns)
-    lines = [title, "", f"{'microseconds a control step':58}{head}"]
+def split(repeats: int) -> str:
+    """The split of a control step; medians over `repeats` rolls of each setting, in turn."""
+    columns: dict[tuple[str, int], list[Split]] = {
+        (backend, substeps): [] for backend in ("compiled", "reference") for substeps in (1, 4)
+    }
+    for _ in range(repeats):
+        for (backend, substeps), rolls in columns.items():
+            overrides = [f"controller.backend={backend}", f"physics.substeps={substeps}"]
+            rolls.append(roll(build(load(overrides))))
+    width = 58
 
     def row(label: str, form: str, value: Callable[[Split], float]) -> str:
-        cells = (format(median(map(value, splits)), form) for splits in columns.values())
-        return f"{label:58}" + "".join(cell.rjust(12) for cell in cells)
+        cells = (format(median(map(value, rolls)), form) for rolls in columns.values())
+        return f"{label:{width}}" + "".join(cell.rjust(11) for cell in cells)
 
+    lines = [
+        f"forward_roll_1, {SECONDS:g} s simulated, median of {repeats} rolls",
+        "",
+        f"{'':{width}}" + "".join(backend.rjust(11) for backend, _ in columns),
+        f"{'microseconds a control step, with substeps':{width}}"
+        + "".join(str(substeps).rjust(11) for _, substeps in columns),
+    ]
     for stage in STAGES:
         label = f"{stage}: {EXPLAINED[stage]}"
         lines.append(row(label, ".0f", partial(_per_step, stage)))
     lines += [
+        "(the compiled step assembles and solves in one call, counted as assembly)",
         "",
-        row("control / physics", ".2f", lambda split: split.control / split.seconds["physics"]),
-        row("real-time factor", ".1f", lambda split: SECONDS / split.total),
-        row("  of physics alone", ".1f", lambda split: SECONDS / split.seconds["physics"]),
+        row("control / physics", ".2f", lambda one: one.control / one.seconds["physics"]),
+        row("real-time factor", ".1f", lambda one: SECONDS / one.total),
+        row("  of physics alone", ".1f", lambda one: SECONDS / one.seconds["physics"]),
     ]
     return "\n".join(lines)
 
 
-def _per_step(stage: str, split: Split) -> float:
-    return 1e6 * split.seconds[stage] / split.steps
-
-
-def _measure(config: Config, repeats: int) -> list[Split]:
-    return [roll(build(config)) for _ in range(repeats)]
+def _per_step(stage: str, one: Split) -> float:
+    return 1e6 * one.seconds[stage] / one.steps
 
 
 def roll(scenario: Scenario) -> Split:
@@ -108,11 +116,12 @@ def roll(scenario: Scenario) -> Split:
     buffer = TrajectoryBuffer.allocate(steps, model.mj.nq, model.mj.nv, model.mj.nu, 64)
     now = behaviour.begin(scenario.start.pitch)
     blend = INITIAL_BLEND
-    split = Split(steps)
-    seconds = split.seconds
+    taken = Split(steps)
+    seconds = taken.seconds
     for i in range(steps):
         t0 = time.perf_counter()
         stepper.evaluate(data)
+        stepper.complaint(data)
         t1 = time.perf_counter()
         state = controller.read(data)
         now = behaviour.advance(now, state)
@@ -131,4 +140,4 @@ def roll(scenario: Scenario) -> Split:
         seconds["assembly"] += t3 - t2 - solve
         seconds["solve"] += solve
         seconds["log"] += t5 - t4
-    return split
+    return taken

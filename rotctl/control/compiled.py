@@ -8,9 +8,11 @@ functions in the library that the mujoco package has loaded.
 import ctypes
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from rotctl.control.condensed import LIMIT_SLACK
 from rotctl.control.decision import Decision
@@ -22,7 +24,6 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum
 from rotctl.mechanics.state import State
 from rotctl.qp.boxqp import DIAGONAL, TOLERANCE
-from rotctl.rotations import Array
 
 LIBRARY = Path(__file__).with_name("_compiled.so")
 CAPACITY = 64  # CONTACTS in compiled.c
@@ -163,7 +164,8 @@ class CompiledStep:
         self._pointers = [
             ctypes.addressof(part) for part in (self._reading, self._wishes, self._answer)
         ]
-        self._read = {name: _view(self._reading, name) for name, _ in _Reading._fields_[:-1]}
+        names = [field[0] for field in _Reading._fields_ if field[0] != "count"]
+        self._read = {name: _view(self._reading, name) for name in names}
         wishes = ("com", "com_velocity", "excursion_error", "angular_velocity")
         self._wished = [(name, _view(self._wishes, name)) for name in wishes]
         self._force = _view(self._answer, "force").reshape(CAPACITY, 3)
@@ -241,7 +243,7 @@ class CompiledStep:
         )
 
 
-def _view(structure: ctypes.Structure, name: str) -> Array:
+def _view(structure: ctypes.Structure, name: str) -> NDArray[Any]:
     return np.ctypeslib.as_array(getattr(structure, name))
 
 

@@ -55,7 +55,7 @@ def _reduced(terms: Terms, solver: Solver) -> Answer:
         reach[:, n + 1] = terms.actuation @ terms.pose_b + terms.drift
         Q = terms.actuation_square / weights.pose
         Q.flat[:: n + 1] += 1.0 / s
-        pulled = np.linalg.solve(Q, reach)
+        pulled = np.asarray(np.linalg.solve(Q, reach), dtype=np.float64)
         square = reach.T @ pulled
         H += square[:-1, :-1]
         f += square[:-1, -1]

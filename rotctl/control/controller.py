@@ -20,12 +20,18 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.qp import Solution, Solver, make_solver
 
+NOT_BUILT = (
+    "the compiled control step is not built, using its numpy reference, which is slower; "
+    "install a C compiler (Debian: apt-get install gcc libc6-dev), then rotctl again"
+)
+
 
 class Controller:
     """Reads the state and decides torques; keeps workspaces, but no memory of the past.
 
     Attributes:
         backend: `compiled` or `reference`, whichever really works here.
+        notice: what a user should know about that; mostly empty.
     """
 
     def __init__(self, model: Model, settings: ControllerSettings) -> None:
@@ -46,9 +52,10 @@ class Controller:
         self.chain: list[tuple[str, Solver]] = [(settings.form, solver)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
             self.chain.append(("condensed", make_solver("boxqp")))
-        compiled = settings.backend == "compiled" and serves(settings, model) and library()
-        self._step = CompiledStep(model, settings) if compiled else None
+        wanted = settings.backend == "compiled" and serves(settings, model)
+        self._step = CompiledStep(model, settings) if wanted and library() else None
         self.backend: BackendName = "compiled" if self._step else "reference"
+        self.notice = NOT_BUILT if wanted and not self._step else ""
 
     def read(self, data: mujoco.MjData) -> State:
         """The state in `data`, whose positions and contacts are up to date."""

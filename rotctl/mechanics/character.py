@@ -66,7 +66,7 @@ class Character:
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]
     friction: Positive
-    trunk: tuple[str, ...]
+    trunk: Annotated[tuple[str, ...], Field(min_length=1)]
     exclude_from_control: tuple[str, ...]
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     self_collision: tuple[tuple[str, str], ...] = ()

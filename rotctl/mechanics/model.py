@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
@@ -29,7 +29,7 @@ PLAIN_OPTIONS = (
     "density",
     "viscosity",
 )
-Count = Annotated[int, Field(ge=0, le=10_000)]
+Count = Annotated[int, Strict(), Field(ge=0, le=10_000)]
 
 
 @validated(frozen=True, config=STRICT)
@@ -38,15 +38,15 @@ class Physics:
 
     name: str
     stepper: Literal["mujoco"]
-    substeps: Annotated[int, Field(ge=1, le=1000)]
+    substeps: Annotated[int, Strict(), Field(ge=1, le=1000)]
     gravity: Vector
     integrator: Literal["euler", "implicit", "implicitfast"]
     cone: Literal["elliptic", "pyramidal"]
     solver: Literal["newton", "cg", "pgs"]
     jacobian: Literal["dense"]
-    iterations: Annotated[int, Field(ge=1, le=10_000)]
+    iterations: Annotated[int, Strict(), Field(ge=1, le=10_000)]
     tolerance: NonNegative
-    ls_iterations: Annotated[int, Field(ge=1, le=10_000)]
+    ls_iterations: Annotated[int, Strict(), Field(ge=1, le=10_000)]
     ls_tolerance: NonNegative
     noslip_iterations: Count
     noslip_tolerance: NonNegative
@@ -58,7 +58,7 @@ class Physics:
     disable: tuple[Literal["autoreset", "warmstart", "eulerdamp", "filterparent"], ...]
     contact_solref: tuple[Positive, Positive]
     contact_solimp: tuple[Fraction, Fraction, Positive, Fraction, Positive]
-    contact_capacity: Annotated[int, Field(ge=1, le=1024)]
+    contact_capacity: Annotated[int, Strict(), Field(ge=1, le=1024)]
     description: str = ""
 
 

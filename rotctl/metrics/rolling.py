@@ -80,7 +80,8 @@ def measure(
     angle = np.asarray(log["trajectory/angular_excursion"], dtype=float)[:, 1] / (2 * math.pi)
     direction = -1.0 if commanded < 0 else 1.0
     first = min(round(criteria.settle / period), steps - 1)
-    elapsed = max(steps - 1 - first, 1) * period
+    # A run that ends before it settled has no mean speeds.
+    elapsed = (steps - 1 - first) * period or math.nan
     axis = np.asarray(log["trajectory/lateral_axis"], dtype=float)[-round(1.0 / period) :]
     heading = np.degrees(np.arctan2(-axis[:, 0], axis[:, 1]))
     stall, stalled_at = longest_stall(direction * angle, criteria.stall_progress, period)

@@ -83,7 +83,7 @@ def simulate(
     if abs(steps - duration * rate) > 1e-6 or steps < 1:
         raise InputError(
             f"duration={duration:g} s is no whole number of control steps of 1/{rate:g} s; "
-            f"nearest: {max(1, steps) / rate:g}"
+            f"nearest: {max(1, steps) / rate:.10g}"
         )
     data = mujoco.MjData(mj)
     place(model, data, start, behaviour.pose(start.pitch))
