@@ -3,10 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from rotctl.bench import scaling
-from rotctl.bench.solvers import compare
-from rotctl.bench.split import split
-from rotctl.bench.startup import processes
+from rotctl.bench import scaling, solvers, split, startup
 
 STATES = 150  # for the comparison of solvers; literal OSQP takes tens of milliseconds on each
 
@@ -18,9 +15,9 @@ def bench(repeats: int, picture: Path | None) -> Iterator[str]:
         repeats: medians are over so many.
         picture: where to plot the cost against contacts, or None.
     """
-    yield split(repeats)
-    yield processes(repeats)
-    yield compare(STATES)
+    yield split.split(repeats)
+    yield startup.processes(repeats)
+    yield solvers.compare(STATES)
     costs = scaling.measure()
     yield scaling.table(costs)
     if picture is not None:

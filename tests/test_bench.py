@@ -1,0 +1,48 @@
+"""The benchmark runs and says what it should; what it measures is nobody's assertion."""
+
+import pytest
+
+from rotctl.bench import scaling, solvers, split, startup
+from rotctl.cli import main
+
+
+def test_the_split_adds_up(monkeypatch):
+    monkeypatch.setattr(split, "SECONDS", 0.5)
+    table = split.split(1)
+    for word in (*split.STAGES, "control / physics", "real-time factor", "compiled", "reference"):
+        assert word in table
+
+
+def test_solvers_agree_with_the_reference_solver():
+    lines = solvers.compare(4).splitlines()
+    rows = {line[:28].strip(): line[28:].split() for line in lines[4:]}
+    assert set(rows) == set(solvers.CHOICES)
+    assert float(rows[solvers.TRUTH][4]) == 0.0
+    for name in ("boxqp condensed, compiled", "boxqp condensed, numpy"):
+        assert float(rows[name][4]) < 1e-3  # [N m]
+
+
+@pytest.mark.parametrize("contacts", [0, 3, 11])
+def test_a_lying_character_has_the_contacts_asked_for(contacts):
+    config = scaling.load([])
+    model = scaling._model(config, 31)
+    assert model.mj.nu == 31
+    state = scaling.Controller(model, config.controller).read(scaling._lying(model, contacts))
+    assert state.contacts.count == contacts
+
+
+def test_costs_are_plotted(tmp_path):
+    costs = [scaling.Cost(m, 29, 10.0 * m, 100.0 * m) for m in scaling.CONTACTS if m]
+    scaling.plot(costs, tmp_path / "cost.svg")
+    assert (tmp_path / "cost.svg").read_text().startswith("<?xml")
+    assert "contacts" in scaling.table(costs)
+
+
+def test_processes(monkeypatch):
+    monkeypatch.setattr(startup, "SECONDS", 0.5)
+    assert "start-up" in startup.processes(1)
+
+
+def test_repeats_must_be_positive(capsys):
+    assert main(["bench", "--repeats", "0"]) == 2
+    assert capsys.readouterr().err == "rotctl: --repeats=0: must be at least 1\n"

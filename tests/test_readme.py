@@ -1,0 +1,59 @@
+"""What the README tells people to type works."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from rotctl.cli import main
+from rotctl.log import RunLog
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = re.findall(r"^\.venv/bin/rotctl ([^#\n]*)", README, flags=re.MULTILINE)
+RUNS = [line for line in COMMANDS if line.startswith("run ")]
+
+
+def test_commands_were_found():
+    assert len(COMMANDS) >= 6
+    assert len(RUNS) >= 3
+
+
+@pytest.mark.parametrize("line", RUNS)
+def test_runs(line, tmp_path, capsys):
+    words = [w for w in shlex.split(line) if w != "--filmstrip" and "duration" not in w]
+    assert main([*words, "duration=0.1", "--out", str(tmp_path)]) == 0
+    assert "run.h5" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("line", [line for line in COMMANDS if line not in RUNS])
+def test_other_commands(line, capsys):
+    try:
+        code = main(shlex.split(line))
+    except SystemExit as end:  # argparse ends --help itself
+        code = end.code
+    assert code == 0
+    assert capsys.readouterr().out
+
+
+def test_the_python_example_reads_a_log(tmp_path, capsys):
+    assert main(["run", "duration=0.1", "--quiet", "--out", str(tmp_path)]) == 0
+    (path,) = tmp_path.glob("*/run.h5")
+    (snippet,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
+    snippet = re.sub(r'open\("[^"]*"\)', f"open({str(path)!r})", snippet)
+    exec(snippet, {})  # our own README, not a stranger's file
+    assert capsys.readouterr().out.startswith("True ")
+    assert RunLog.open(path).steps == 6
+
+
+def test_make_calls_what_the_readme_says():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert "rotctl run" in makefile
+    for target in ("run:", "test:", "help:", "bench:", "lint:", "clean:"):
+        assert re.search(rf"^{target}", makefile, flags=re.MULTILINE)
+
+
+def test_links_lead_somewhere():
+    for target in re.findall(r"\]\(([^)]+)\)", README):
+        assert (ROOT / target).exists(), target
