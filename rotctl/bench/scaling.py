@@ -15,7 +15,7 @@ from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
-CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 22)
+CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 22, 32)
 HINGES = (29, 37, 46, 58)
 AT = 8  # contacts, where hinges vary
 TRIES = 60  # repeats of one decision; the least disturbed is taken
@@ -101,7 +101,7 @@ def _lying(model: Model, contacts: int) -> mujoco.MjData:
     data.qpos[:7] = [0.0, 0.0, 0.14, np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0]
     data.qvel[:] = 0.1 * np.random.default_rng(0).normal(size=model.mj.nv)
     margin = model.mj.geom_margin.copy()
-    model.mj.geom_margin[:] = 0.2
+    model.mj.geom_margin[:] = 0.6
     mujoco.mj_step1(model.mj, data)
     model.mj.geom_margin[:] = margin
     ground = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))

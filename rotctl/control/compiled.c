@@ -96,14 +96,15 @@ static void rotate(double* out, const double* R, const double* v) {
   for (int i = 0; i < 3; i++) out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
 }
 
-// out (n, n) += rows' rows, rows (k, n) with leading dimension ld; upper triangle and mirror.
-static void add_square(double* out, int ld_out, const double* rows, int k, int n, int ld, double s) {
+// out (n, n), zero so far, becomes s rows' rows; rows (k, n) with leading dimension ld.
+static void square(double* out, int ld_out, const double* rows, int k, int n, int ld, double s) {
   for (int r = 0; r < k; r++)
     for (int i = 0; i < n; i++) {
       double a = s * rows[r * ld + i];
-      if (a == 0) continue;
-      for (int j = 0; j < n; j++) out[i * ld_out + j] += a * rows[r * ld + j];
+      for (int j = i; j < n; j++) out[i * ld_out + j] += a * rows[r * ld + j];
     }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++) out[i * ld_out + j] = out[j * ld_out + i];
 }
 
 // Cholesky factor of a (n, n) in place, lower triangle; 0 if not positive definite.
@@ -342,7 +343,7 @@ static int full(Self* s, const int* rows, int m, double weight, const Wishes* w,
   }
   memset(s->H, 0, sizeof(double) * n3 * n3);
   memset(s->f, 0, sizeof(double) * n3);
-  add_square(s->H, n3, velocity, n, k, k, velocity_weight);
+  square(s->H, n3, velocity, n, k, k, velocity_weight);
   for (int i = 0; i < n; i++)
     for (int j = 0; j < k; j++) s->f[j] += velocity_weight * velocity[i * k + j] * s->drift[rows[i]];
   for (int i = 0; i < nu; i++) {
@@ -359,9 +360,11 @@ static int full(Self* s, const int* rows, int m, double weight, const Wishes* w,
   return solve_cone(s, nu, m, 1, s->torque, force, gamma, residual);
 }
 
-// control/condensed.py `solve`: one pass over the candidate rows `rows` (3m).
-static int pass(Self* s, const int* rows, int m, const Wishes* w, double* force, double* gamma,
-                double* residual) {
+// control/condensed.py `solve`: one pass over the candidate rows `rows` (3m); where `warm`,
+// s->x holds a guess of edges and gamma. Leaves s->x as [torques if they were needed, edges,
+// gamma] and says in *head how many torques there are.
+static int pass(Self* s, const int* rows, int m, const Wishes* w, int warm, double* force,
+                double* gamma, double* residual, int* head) {
   const Constants* c = &s->c;
   int nu = s->nu, n = 3 * m, n3 = n + 1, ld = n + 2;
   double velocity_weight = c->contact_velocity * c->period * c->period;
@@ -391,7 +394,7 @@ static int pass(Self* s, const int* rows, int m, const Wishes* w, double* force,
       }
       for (int j = 0; j < ld; j++) row[j] /= s->Q[i * n + i];
     }
-    add_square(s->H, n3, s->reach, n, n3, ld, 1);
+    square(s->H, n3, s->reach, n, n3, ld, 1);
     for (int i = 0; i < n; i++)
       for (int j = 0; j < n3; j++) s->f[j] += s->reach[i * ld + j] * s->reach[i * ld + n + 1];
   }
@@ -399,7 +402,8 @@ static int pass(Self* s, const int* rows, int m, const Wishes* w, double* force,
   s->H[n * n3 + n] += weight;
   s->f[n] -= weight * w->blend;
   double none[1];
-  if (solve_cone(s, 0, m, 0, none, force, gamma, residual) == FAILED) return FAILED;
+  *head = 0;
+  if (solve_cone(s, 0, m, warm, none, force, gamma, residual) == FAILED) return FAILED;
   for (int i = 0; i < nu; i++) s->torque[i] = s->tau_b[i] + *gamma * s->difference[i];
   if (met) {
     double* y = s->t1;
@@ -415,8 +419,10 @@ static int pass(Self* s, const int* rows, int m, const Wishes* w, double* force,
     }
   }
   for (int i = 0; i < nu; i++)
-    if (!(fabs(s->torque[i]) <= c->torque_limit[i] + c->slack))
+    if (!(fabs(s->torque[i]) <= c->torque_limit[i] + c->slack)) {
+      *head = nu;
       return full(s, rows, m, weight, w, force, gamma, residual);
+    }
   return 1;
 }
 
@@ -491,13 +497,17 @@ int rotctl_decide(Self* s, mjData* d, const Reading* r, const Wishes* w, Answer*
   collect(s, d, r, contact, k, rates);
   for (int i = 0; i < 3 * k; i++) rows[i] = i;
   double force[ROWS], gamma;
-  if (pass(s, rows, k, w, force, &gamma, &out->residual) == FAILED) return FAILED;
+  int head;
+  if (pass(s, rows, k, w, 0, force, &gamma, &out->residual, &head) == FAILED) return FAILED;
   for (int i = 0; i < k; i++)
     if (c->supervisor == NO_SUPERVISOR || keeps(s, d, i, force)) kept[m++] = i;
   if (m < k) {
-    for (int i = 0; i < m; i++)
+    for (int i = 0; i < m; i++) {  // edges only move down: kept[i] >= i
       for (int a = 0; a < 3; a++) rows[3 * i + a] = 3 * kept[i] + a;
-    if (pass(s, rows, m, w, force, &gamma, &out->residual) == FAILED) return FAILED;
+      for (int e = 0; e < 4; e++) s->x[4 * i + e] = s->x[head + 4 * kept[i] + e];
+    }
+    s->x[4 * m] = gamma;
+    if (pass(s, rows, m, w, 1, force, &gamma, &out->residual, &head) == FAILED) return FAILED;
   }
   for (int i = 0; i < s->nu; i++) {
     if (!isfinite(s->torque[i])) return FAILED;

@@ -16,6 +16,7 @@ alone gets each contact force as a non-negative sum of the friction pyramid's fo
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rotctl.control.answer import Answer
 from rotctl.control.cone import solve_cone
@@ -26,11 +27,15 @@ from rotctl.rotations import Array
 LIMIT_SLACK = 1e-6  # [N m] a torque this far beyond its limit is rounding, and is clipped
 
 
-def solve(terms: Terms, solver: Solver) -> Answer:
-    """Torques, contact forces and blend of one pass."""
+def solve(terms: Terms, solver: Solver, start: Array | None = None) -> Answer:
+    """Torques, contact forces and blend of one pass.
+
+    Args:
+        start: a guess in the solver's own variables for forces and blend, see `warm_start`.
+    """
     if terms.weights.pose == 0:
         return _full(terms, solver, None)
-    answer = _reduced(terms, solver)
+    answer = _reduced(terms, solver, start)
     within = np.abs(answer.torque) <= terms.torque_limit + LIMIT_SLACK
     if not answer.solution.solved or within.all():
         return answer
@@ -40,7 +45,14 @@ def solve(terms: Terms, solver: Solver) -> Answer:
     return replace(full, solution=replace(full.solution, iterations=iterations))
 
 
-def _reduced(terms: Terms, solver: Solver) -> Answer:
+def warm_start(first: Answer, keep: NDArray[np.bool_], solver: Solver) -> Array:
+    """A guess for a pass over the contacts where `keep` is True, from a pass over all."""
+    each = 4 if solver.shape == "bounds" else 3  # unknowns a contact
+    tail = first.solution.x[-(each * len(keep) + 1) :]
+    return np.concatenate((tail[:-1][np.repeat(keep, each)], tail[-1:]))
+
+
+def _reduced(terms: Terms, solver: Solver, start: Array | None) -> Answer:
     m, weights = terms.contacts, terms.weights
     n = 3 * m
     difference = terms.pose_a - terms.pose_b
@@ -62,7 +74,7 @@ def _reduced(terms: Terms, solver: Solver) -> Answer:
     _add_forces(H[:n, :n], f[:n], terms)
     H[n, n] += terms.blend_weight
     f[n] -= terms.blend_weight * terms.blend
-    solution, _, force, tail = solve_cone(terms, solver, H, f, None)
+    solution, _, force, tail = solve_cone(terms, solver, H, f, start)
     blend = float(tail[0])
     yielded = pulled[:, :n] @ force.ravel() + pulled[:, n] * blend + pulled[:, n + 1]
     torque = terms.pose_b + blend * difference - terms.actuation.T @ yielded / weights.pose

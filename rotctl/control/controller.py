@@ -19,6 +19,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.qp import Solution, Solver, make_solver
+from rotctl.rotations import Array
 
 NOT_BUILT = (
     "the compiled control step is not built, using its numpy reference, which is slower; "
@@ -112,7 +113,7 @@ class Controller:
     def _two_passes(self, form: str, solver: Solver, terms: Terms, state: State) -> "_Outcome":
         """The optimisation over all candidate contacts, then over those that pass the test."""
         everything = np.ones(terms.contacts, dtype=bool)
-        first = self._pass(form, solver, terms, state)
+        first = self._pass(form, solver, terms, state, None)
         outcome = _Outcome(first, terms, everything, first.solution.iterations)
         rule = RULES.get(self.settings.supervisor)
         if outcome.reason or rule is None:
@@ -121,13 +122,16 @@ class Controller:
         if keep.all():
             return outcome
         subset = terms.subset(keep)
-        second = self._pass(form, solver, subset, state)
+        start = condensed.warm_start(first, keep, solver) if form == "condensed" else None
+        second = self._pass(form, solver, subset, state, start)
         return _Outcome(second, subset, keep, outcome.iterations + second.solution.iterations)
 
-    def _pass(self, form: str, solver: Solver, terms: Terms, state: State) -> Answer:
+    def _pass(
+        self, form: str, solver: Solver, terms: Terms, state: State, start: Array | None
+    ) -> Answer:
         if form == "literal":
             return literal.solve(terms, self.model, state, solver)
-        return condensed.solve(terms, solver)
+        return condensed.solve(terms, solver, start)
 
 
 @dataclass(frozen=True)
