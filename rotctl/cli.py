@@ -21,13 +21,17 @@ examples:
   rotctl run                                      Forward Roll 1, 20 s, into runs/<run id>/
   rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
   rotctl run controller.weights.angular_momentum=8
+  rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
+  rotctl summarise sweeps/a                       success rate with its interval, quartiles
   rotctl list                                     what can be chosen
   rotctl show behaviour=forward_roll_1            the whole config, with these choices
-  rotctl render runs/<run id>/run.h5 --filmstrip roll.png
+  rotctl replay runs/<run id>/run.h5              a page that plays it in the browser
+  rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
+  rotctl plot runs/<run id>/run.h5 --out roll.pdf
   rotctl inspect runs/<run id>/run.h5             what is in a log
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, 2 bad input, 130 interrupted
+the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
 """
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
@@ -50,7 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"rotctl: {_one_line(str(error))}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
-        print("rotctl: interrupted; an unfinished run leaves no log", file=sys.stderr)
+        print(f"rotctl: interrupted; {arguments.interrupted}", file=sys.stderr)
         return 130
     except BrokenPipeError:  # whoever read our output has seen enough
         _drop_stdout()
@@ -159,13 +163,50 @@ def _parser() -> argparse.ArgumentParser:
         "--filmstrip",
         type=Path,
         metavar="OUT.png",
-        required=True,
         help="side view that follows the character, frame beside frame",
     )
-    render.add_argument("--frames", type=int, default=12, help="number of frames [%(default)s]")
-    render.add_argument("--from", type=float, metavar="S", dest="start", help="first time [s]")
-    render.add_argument("--to", type=float, metavar="S", dest="end", help="last time [s]")
+    render.add_argument(
+        "--video",
+        type=Path,
+        metavar="OUT.mp4",
+        help="the same view as a film, 30 frames/s; needs ffmpeg (pip install 'rotctl[video]')",
+    )
+    render.add_argument(
+        "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
+    )
+    _add_window(render)
     render.set_defaults(command=_render)
+
+    replay = commands.add_parser(
+        "replay",
+        help="make a page that plays a logged run in the browser",
+        description="Write one HTML file that works offline: the run in 3D with its contact "
+        "forces, beside its plots. Nothing is simulated again.",
+    )
+    replay.add_argument("log", type=Path, metavar="RUN.h5")
+    replay.add_argument(
+        "--html", type=Path, metavar="OUT.html", help="where to write it [replay.html by the log]"
+    )
+    replay.add_argument(
+        "--compare", type=Path, metavar="OTHER.h5", help="another run, laid over as a ghost"
+    )
+    replay.set_defaults(command=_replay)
+
+    plot = commands.add_parser(
+        "plot",
+        help="plot a logged run on one page",
+        description="Plot rotation, momentum rates, blend, torques, contacts and solver of a run "
+        "on one page, from its log alone.",
+    )
+    plot.add_argument("log", type=Path, metavar="RUN.h5")
+    plot.add_argument(
+        "--out",
+        type=Path,
+        metavar="OUT.png|.svg|.pdf",
+        help="where to write it [plot.png by the log]",
+    )
+    _add_window(plot)
+    plot.set_defaults(command=_plot)
 
     listing = commands.add_parser(
         "list",
@@ -202,9 +243,73 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument("--plot", type=Path, metavar="OUT.svg", help="plot cost against contacts")
     bench.set_defaults(command=_bench)
 
+    sweep = commands.add_parser(
+        "sweep",
+        help="simulate many runs, and go on where it ended",
+        description="Simulate every point of a grid into DIR/<run id>/run.h5, in Hydra's sweep "
+        "syntax: a=x,y  'seed=range(0,100)'  'start=glob(*)'  or +experiment=NAME. Runs that are "
+        "there are not redone, so that the same command goes on where it was cut off.",
+    )
+    sweep.add_argument("overrides", nargs="*", metavar="KEY=VALUES", help=OVERRIDES_HELP)
+    sweep.add_argument("--out", type=_folder, required=True, metavar="DIR", help="folder of runs")
+    sweep.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
+    sweep.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
+    sweep.add_argument(
+        "--retries", type=int, default=2, help="for a run whose worker died [%(default)s]"
+    )
+    sweep.add_argument("--dry-run", action="store_true", help="only say what there is to do")
+    sweep.add_argument("--strict", action="store_true", help="redo what other code has made")
+    sweep.add_argument("--quiet", action="store_true", help="no progress, no notices")
+    sweep.set_defaults(command=_sweep)
+
+    summarise = commands.add_parser(
+        "summarise",
+        help="tables of many runs",
+        description="Tabulate all runs below DIR, one row a run, into summary.csv (and "
+        "summary.parquet, if pyarrow is there), and print success rates with 95 %% intervals and "
+        "the quartiles of the metrics by group, also in groups.csv.",
+    )
+    summarise.add_argument("folder", type=Path, metavar="DIR")
+    summarise.add_argument(
+        "--by", metavar="KEY,KEY", help="columns to group by [the overridden keys but the seed]"
+    )
+    summarise.add_argument(
+        "--mixed", action="store_true", help="average over runs of different code all the same"
+    )
+    summarise.set_defaults(command=_summarise)
+
+    tune = commands.add_parser(
+        "tune",
+        help="search for poses or gains over many starts",
+        description="Search what conf/tune/NAME.yaml declares, in whole generations, each on "
+        "fresh training starts. The same command again goes on where the last one ended.",
+    )
+    tune.add_argument("name", metavar="NAME", help="a space in conf/tune/, or a .yaml file")
+    tune.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    tune.add_argument(
+        "--out", type=_folder, required=True, metavar="DIR", help="holds the search and its result"
+    )
+    budget = tune.add_mutually_exclusive_group()
+    budget.add_argument("--trials", type=int, metavar="N", help="candidates in all [the space's]")
+    budget.add_argument("--minutes", type=float, metavar="M", help="time for this call instead")
+    tune.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
+    tune.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
+    tune.add_argument("--sampler", choices=("cmaes", "tpe"), help="instead of the space's")
+    tune.add_argument("--seed", type=int, default=0, metavar="S", help="of the search [0]")
+    tune.set_defaults(command=_tune)
+
     for command in commands.choices.values():
-        command.set_defaults(parser=command)
+        command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
+    for command in (render, replay, plot):
+        command.set_defaults(interrupted="an unfinished picture is not written")
+    for command in (sweep, tune):
+        command.set_defaults(interrupted="the same command does what is left")
     return parser
+
+
+def _add_window(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--from", type=float, metavar="S", dest="start", help="first time [s]")
+    command.add_argument("--to", type=float, metavar="S", dest="end", help="last time [s]")
 
 
 def _run(arguments: argparse.Namespace) -> int:
@@ -260,16 +365,51 @@ def _filmstrip_beside(log: Path) -> str:
 
 def _render(arguments: argparse.Namespace) -> int:
     from rotctl.log import RunLog
-    from rotctl.report.filmstrip import filmstrip
 
-    filmstrip(
-        RunLog.open(_log_file(arguments.log)),
-        arguments.filmstrip,
-        frames=arguments.frames,
-        start=arguments.start,
-        end=arguments.end,
-    )
-    print(arguments.filmstrip)
+    if arguments.filmstrip is None and arguments.video is None:
+        raise InputError("nothing to draw: give --filmstrip OUT.png, --video OUT.mp4 or both")
+    log, window = RunLog.open(_log_file(arguments.log)), (arguments.start, arguments.end)
+    if arguments.filmstrip is not None:
+        from rotctl.report.filmstrip import filmstrip
+
+        filmstrip(log, arguments.filmstrip, arguments.frames, *window)
+        print(arguments.filmstrip, flush=True)
+    if arguments.video is not None:
+        from tqdm import tqdm
+
+        from rotctl.report.video import video
+
+        with tqdm(desc="video", unit="frame", leave=False, disable=None, delay=0.2) as bar:
+
+            def progress(done: int, total: int) -> None:
+                bar.total = total
+                bar.update(done - bar.n)
+
+            video(log, arguments.video, *window, progress)
+        print(arguments.video)
+    return 0
+
+
+def _replay(arguments: argparse.Namespace) -> int:
+    from rotctl.log import RunLog
+    from rotctl.report.replay import replay
+
+    log = RunLog.open(_log_file(arguments.log))
+    other = arguments.compare and RunLog.open(_log_file(arguments.compare))
+    out = arguments.html or arguments.log.with_name("replay.html")
+    replay(log, out, other)
+    print(out)
+    return 0
+
+
+def _plot(arguments: argparse.Namespace) -> int:
+    from rotctl.log import RunLog
+    from rotctl.report.plot import plot
+
+    log = RunLog.open(_log_file(arguments.log))
+    out = arguments.out or arguments.log.with_name("plot.png")
+    plot(log, out, arguments.start, arguments.end)
+    print(out)
     return 0
 
 
@@ -315,6 +455,81 @@ def _bench(arguments: argparse.Namespace) -> int:
         raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
     for table in bench(arguments.repeats, arguments.plot):
         print(table, end="\n\n", flush=True)
+    return 0
+
+
+def _sweep(arguments: argparse.Namespace) -> int:
+    from contextlib import closing
+
+    from rotctl.sweep.engines import make_engine
+    from rotctl.sweep.experiments import matrix
+    from rotctl.sweep.launch import launch
+    from rotctl.sweep.lock import locked
+    from rotctl.sweep.plan import plan, planned
+    from rotctl.sweep.points import points
+    from rotctl.sweep.progress import shown
+    from rotctl.sweep.said import at_the_end, at_the_start, failures, without_running
+
+    if arguments.retries < 0:
+        raise InputError(f"--retries={arguments.retries}: must be at least 0")
+    runs = planned(points(matrix(arguments.overrides)))
+    with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
+        if arguments.dry_run:
+            print(without_running(runs, arguments.out, engine.workers))
+            return 0
+        with locked(arguments.out):
+            there = plan(runs, arguments.out, arguments.strict)
+            if not arguments.quiet:
+                print(at_the_start(there, arguments.out, engine.where), file=sys.stderr, flush=True)
+            with shown(len(runs), len(there.done), arguments.quiet) as progress:
+                now = launch(there, runs, arguments.out, engine, arguments.retries, progress)
+    if now.broken:
+        print(_printable(failures(now, runs)), file=sys.stderr)
+    if not arguments.quiet:
+        print(at_the_end(now, there, arguments.out))
+    return 1 if now.broken else 0
+
+
+def _summarise(arguments: argparse.Namespace) -> int:
+    from rotctl.sweep.groups import grouped, markdown, written
+    from rotctl.sweep.table import table
+
+    found = table(arguments.folder)
+    groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
+    print(_printable(markdown(groups)), end="\n\n")
+    for path in written(arguments.folder, found.rows, groups.rows):
+        print(path)
+    for note in [*found.notes, *groups.notes]:
+        print(_one_line(note), file=sys.stderr)
+    return 0
+
+
+def _tune(arguments: argparse.Namespace) -> int:
+    from contextlib import closing
+
+    from tqdm import tqdm
+
+    from rotctl.sweep.engines import make_engine
+    from rotctl.tune import result
+    from rotctl.tune.search import Watch, prepare, tune
+
+    search, budget = prepare(
+        arguments.name,
+        arguments.overrides,
+        arguments.seed,
+        arguments.sampler,
+        arguments.trials,
+        arguments.minutes,
+    )
+    with (
+        closing(make_engine(arguments.jobs, arguments.scheduler)) as engine,
+        tqdm(desc=search.space.name, unit="run", leave=False, disable=None, delay=0.2) as bar,
+    ):
+        watch = Watch(lambda text: bar.write(text, file=sys.stderr), bar.update)
+        found = tune(search, arguments.out, budget, engine, watch)
+    written = result.write(found, arguments.out)
+    print(result.comparison(found), *written, sep="\n")
+    print(result.how_to_judge(found, written, arguments.out))
     return 0
 
 

@@ -6,23 +6,37 @@ import yaml
 
 from rotctl.errors import InputError
 
+_NO_GROUPS = {"tune"}  # folders of conf/ that no config is composed from
+
 
 def conf_dir() -> Path:
-    """The folder of configs: inside an installed package, else beside it in a checkout.
+    """The folder of configs.
+
+    Raises:
+        InputError: there is none.
+    """
+    return shipped("conf", "config.yaml")
+
+
+def shipped(name: str, holds: str = "*.yaml") -> Path:
+    """A folder that comes with rotctl: inside an installed package, else beside a checkout's.
+
+    Args:
+        holds: a pattern that at least one file in it fits.
 
     Raises:
         InputError: there is none.
     """
     package = Path(__file__).resolve().parent
-    for folder in (package / "conf", package.parent / "conf"):
-        if (folder / "config.yaml").is_file():
+    for folder in (package / name, package.parent / name):
+        if any(folder.glob(holds)):
             return folder
-    raise InputError(f"no conf/config.yaml in {package} or beside it; reinstall rotctl")
+    raise InputError(f"no {name}/{holds} in {package} or beside it; reinstall rotctl")
 
 
 def choices(group: str) -> list[str]:
     """The choices of a config group, sorted; empty if there is no such group."""
-    if not group.isidentifier():
+    if not group.isidentifier() or group in _NO_GROUPS:
         return []
     return sorted(path.stem for path in (conf_dir() / group).glob("*.yaml"))
 
@@ -34,6 +48,8 @@ def groups() -> dict[str, dict[str, str]]:
     """
     found: dict[str, dict[str, str]] = {}
     for path in sorted(conf_dir().glob("*/*.yaml")):
+        if path.parent.name in _NO_GROUPS:
+            continue
         text = path.read_text(encoding="utf-8")
         description = (yaml.safe_load(text) or {}).get("description") or _first_comment(text)
         found.setdefault(path.parent.name, {})[path.stem] = str(description)

@@ -15,7 +15,9 @@ import numpy as np
 
 from rotctl.config import Config, to_yaml
 from rotctl.errors import InputError, LogError
-from rotctl.log import RunLog, TrajectoryBuffer, collect, write_run
+from rotctl.log import RunLog, TrajectoryBuffer, collect, encode_run, write_log
+from rotctl.mechanics.excursion import Excursion
+from rotctl.mechanics.state import State
 from rotctl.metrics.rolling import RollingMetrics, failure_reason, measure
 from rotctl.scenario import Scenario, build
 from rotctl.simulation.loop import simulate
@@ -46,9 +48,13 @@ class Result:
     @property
     def broke_down(self) -> bool:
         """Whether the run itself failed, as opposed to the roll."""
-        return bool(self.summary["solver_failures"]) or str(
-            self.summary["failure_reason"]
-        ).startswith("physics")
+        return broke_down(self.summary)
+
+
+def broke_down(summary: Summary) -> bool:
+    """Whether a run itself failed, as opposed to the roll."""
+    physics = str(summary["failure_reason"]).startswith("physics")
+    return bool(summary["solver_failures"]) or physics
 
 
 def run(
@@ -66,44 +72,72 @@ def run(
     Raises:
         InputError: the config does not make a run, or the folder cannot be written.
     """
-    with _mujoco_warnings():
-        scenario = build(config)
+    scenario = _built(config)
     folder = out / scenario.run_id
     replaced = ""
     if not force and os.path.lexists(folder / LOG_NAME):
         try:
-            return Result(folder, _existing(folder, scenario.run_id), already_there=True)
+            log = stored(folder, scenario.run_id)
+            return Result(folder, log.outcome, already_there=True)
         except LogError as error:
             replaced = str(error)
     with _writable(folder):
-        summary = _simulated(scenario, folder, progress)
+        made = _simulated(scenario, progress)
+        publish(made, folder)
     notice = scenario.controller.notice
-    return Result(folder, summary, already_there=False, replaced=replaced, notice=notice)
+    return Result(folder, made.summary, already_there=False, replaced=replaced, notice=notice)
 
 
-def _simulated(scenario: Scenario, folder: Path, progress: Callable[[], object]) -> Summary:
+@dataclass(frozen=True)
+class Made:
+    """A simulated run that is on no disk yet.
+
+    Attributes:
+        summary: the summary row.
+        log: the bytes of its `run.h5`.
+    """
+
+    summary: Summary
+    log: bytes
+
+
+def make(config: Config) -> Made:
+    """Simulate a config and write nothing: for workers that need not see the driver's disk.
+
+    Raises:
+        InputError: the config does not make a run.
+    """
+    return _simulated(_built(config), lambda: None)
+
+
+def publish(made: Made, folder: Path) -> None:
+    """Put a run into its folder: first the log, which alone says that the run is there.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot write {folder}: {error.strerror}") from None
+    write_log(folder / LOG_NAME, made.log)
+    _write_summary(folder / SUMMARY_NAME, made.summary)
+
+
+def _built(config: Config) -> Scenario:
+    with _mujoco_warnings():
+        return build(config)
+
+
+def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
     config = scenario.config
     begin = time.perf_counter()
-    # What is not finite is found by the loop and told by the log, not by numpy on stderr.
-    with np.errstate(all="ignore"), _mujoco_warnings() as warnings:
-        outcome = simulate(
-            scenario.model,
-            scenario.behaviour,
-            scenario.controller,
-            scenario.stepper,
-            scenario.start,
-            config.duration,
-            config.physics.contact_capacity,
-            progress,
-        )
+    buffer, breakdown = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
-    # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
-    breakdown = outcome.breakdown or (f"MuJoCo warns: {warnings[0]}" if warnings else "")
-    summary = summarise(scenario, outcome.buffer, breakdown, wall)
+    summary = summarise(scenario, buffer, breakdown, wall)
     found = collect()
-    write_run(
-        folder / LOG_NAME,
-        outcome.buffer,
+    log = encode_run(
+        buffer,
         model_xml=scenario.model.mjcf,
         attributes={
             **found,
@@ -115,8 +149,35 @@ def _simulated(scenario: Scenario, folder: Path, progress: Callable[[], object])
             "outcome": summary,
         },
     )
-    _write_summary(folder / SUMMARY_NAME, summary)
-    return summary
+    return Made(summary, log)
+
+
+def in_memory(
+    scenario: Scenario,
+    progress: Callable[[], object] = lambda: None,
+    stop: Callable[[State, Excursion], bool] = lambda state, now: False,
+) -> tuple[TrajectoryBuffer, str]:
+    """Simulate, and write nothing; `progress` and `stop` are those of `simulate`.
+
+    Returns:
+        The rows, and what broke down; empty if nothing did.
+    """
+    # What is not finite is found by the loop and told by the log, not by numpy on stderr.
+    with np.errstate(all="ignore"), _mujoco_warnings() as warnings:
+        outcome = simulate(
+            scenario.model,
+            scenario.behaviour,
+            scenario.controller,
+            scenario.stepper,
+            scenario.start,
+            scenario.config.duration,
+            scenario.config.physics.contact_capacity,
+            progress,
+            stop,
+        )
+    # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
+    heard = f"MuJoCo warns: {warnings[0]}" if warnings else ""
+    return outcome.buffer, outcome.breakdown or heard
 
 
 def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall: float) -> Summary:
@@ -159,8 +220,8 @@ def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) 
     return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
 
 
-def _existing(folder: Path, run_id: str) -> Summary:
-    """The summary of the run in `folder`; puts `summary.json` back if a kill prevented it.
+def stored(folder: Path, run_id: str) -> RunLog:
+    """The run in `folder`, all of it checked; puts `summary.json` back if a kill prevented it.
 
     Raises:
         LogError: the log there is not whole, or of another run.
@@ -171,7 +232,7 @@ def _existing(folder: Path, run_id: str) -> Summary:
         raise LogError(f"{log.path}: is run {log.attributes['run_id']}, expected {run_id}")
     if not (folder / SUMMARY_NAME).exists():
         _write_summary(folder / SUMMARY_NAME, log.outcome)
-    return log.outcome
+    return log
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -41,7 +42,7 @@ def build(config: Config) -> Scenario:
         InputError: parts that do not fit together, with one clear line.
     """
     control = config.controller
-    model = models.build(config.character, config.terrain, config.physics, control.rate)
+    model = model_of(config)
     return Scenario(
         config=config,
         model=model,
@@ -57,6 +58,19 @@ def build(config: Config) -> Scenario:
         start=starts.draw(config.start, np.random.default_rng(config.seed)),
         run_id=run_id(config, model),
     )
+
+
+# Nobody changes a model, so runs that differ in their seed or gains share one.
+_model = lru_cache(maxsize=8)(models.build)
+
+
+def model_of(config: Config) -> Model:
+    """The model that a config describes, compiled once a process.
+
+    Raises:
+        InputError: the numbers do not make a model.
+    """
+    return _model(config.character, config.terrain, config.physics, config.controller.rate)
 
 
 def run_id(config: Config, model: Model) -> str:

@@ -17,7 +17,7 @@ from rotctl.log import RunLog
 
 RUN = ["run", "duration=0.5"]
 LONG = ["run", "duration=900"]
-COMMANDS = ("run", "render", "list", "show", "inspect", "bench")
+COMMANDS = ("run", "render", "replay", "plot", "list", "show", "inspect", "bench")
 
 
 @pytest.fixture
@@ -155,7 +155,7 @@ def test_overrides_and_options_may_be_mixed(cli, made):
         ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: rest, symmetric, '
          "tucked"),
         ([*RUN, "seed=1,2"], "rotctl: override 'seed=1,2': run takes one value for seed; "
-         "start one run for each"),
+         "rotctl sweep takes many"),
         ([*RUN, "seed"], "rotctl: override 'seed' has no '='; write key=value, such as seed=3"),
         ([*RUN, "--out", ""], "rotctl run: argument --out: the name is empty; "
          "see rotctl run --help"),

@@ -112,14 +112,14 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ('seed="a', f"override 'seed=\"a': {NOT_READ}"),
         ("seed=1\n2", f"override 'seed=1\\n2': {NOT_READ}"),
         ("seed=\0", f"override 'seed=\\x00': {NOT_READ}"),
-        ("seed=1,2", "override 'seed=1,2': run takes one value for seed; start one run for each"),
+        ("seed=1,2", "override 'seed=1,2': run takes one value for seed; rotctl sweep takes many"),
         (
             "physics=mujoco,x",
-            "override 'physics=mujoco,x': run takes one value for physics; start one run for each",
+            "override 'physics=mujoco,x': run takes one value for physics; rotctl sweep takes many",
         ),
         (
             "seed=range(1,3)",
-            "override 'seed=range(1,3)': run takes one value for seed; start one run for each",
+            "override 'seed=range(1,3)': run takes one value for seed; rotctl sweep takes many",
         ),
         (
             "behaviour={}",

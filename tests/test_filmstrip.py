@@ -6,15 +6,16 @@ import sys
 
 import numpy as np
 import pytest
+from logs import changed
 from PIL import Image
 
 from rotctl.config import load
 from rotctl.errors import InputError, LogError
-from rotctl.log import SCHEMA, RunLog, write_run
-from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
+from rotctl.log import RunLog
 from rotctl.report import filmstrip as module
-from rotctl.report import gl
+from rotctl.report import frame, gl
 from rotctl.report.filmstrip import filmstrip
+from rotctl.report.title import verdict
 from rotctl.run import LOG_NAME, run
 
 
@@ -34,15 +35,6 @@ def picture(tmp_path):
             raise
         pytest.skip(str(error))
     return tmp_path / "strip.png"
-
-
-def changed(log, folder, arrays=(), **attributes):
-    """The same log with other content."""
-    content = {name: log[name] for name in SCHEMA if name != MODEL_PATH} | dict(arrays)
-    kept = {k: v for k, v in log.attributes.items() if k not in WRITER_ATTRIBUTES}
-    model = attributes.pop("model_xml", log.model_xml)
-    write_run(folder / "changed.h5", content, model_xml=model, attributes=kept | attributes)
-    return RunLog.open(folder / "changed.h5")
 
 
 def size(columns, rows):
@@ -77,9 +69,9 @@ def test_frames_show_a_character_that_moves_under_a_sky(log, picture):
     with Image.open(picture) as image:
         assert (image.format, image.size) == ("PNG", size(columns=2, rows=2))
     frames = frames_of(picture, columns=2, rows=2)
-    for frame in frames:
-        assert frame[2].min() > 120  # sky, not black
-        assert frame.std() > 25  # and something in front of it
+    for pixels in frames:
+        assert pixels[2].min() > 120  # sky, not black
+        assert pixels.std() > 25  # and something in front of it
     assert all(np.abs(a - b).mean() > 1.0 for a, b in zip(frames, frames[1:], strict=False))
 
 
@@ -87,7 +79,7 @@ def test_used_contacts_are_marked(log, picture):
     row = next(i for i in range(log.steps) if log["contacts/used"][i].any())
     time = log["trajectory/time"]
     filmstrip(log, picture, frames=1, start=float(time[row]))
-    assert coloured(frames_of(picture, 1, 1)[0], module._USED) > 20
+    assert coloured(frames_of(picture, 1, 1)[0], frame.USED) > 20
 
 
 def test_the_same_log_gives_the_same_bytes(log, picture):
@@ -107,16 +99,16 @@ def test_there_are_no_more_frames_than_steps(log, picture):
 @pytest.mark.parametrize(
     ("outcome", "colour"),
     [
-        ({"success": True, "revolutions": 2.0, "duration": 3.0}, module._GOOD),
-        ({"success": False, "failure_reason": "stalled"}, module._BAD),
-        ({"success": "\x1b[31m"}, module._SOFT),
+        ({"success": True, "revolutions": 2.0, "duration": 3.0}, frame.GOOD),
+        ({"success": False, "failure_reason": "stalled"}, frame.BAD),
+        ({"success": "\x1b[31m"}, frame.SOFT),
     ],
 )
 def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, colour):
     filmstrip(changed(log, tmp_path, outcome=outcome), picture, frames=1)
     with Image.open(picture) as image:
         verdict = np.asarray(image.convert("RGB"), dtype=int)[50 : module._HEADER]
-    shown = {c: coloured(verdict, c) for c in (module._GOOD, module._BAD, module._SOFT)}
+    shown = {c: coloured(verdict, c) for c in (frame.GOOD, frame.BAD, frame.SOFT)}
     assert shown[colour] > 20
     assert sum(shown.values()) == shown[colour]
 
@@ -138,7 +130,7 @@ def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, co
     ],
 )
 def test_the_verdict_in_words(outcome, text):
-    assert module._verdict(outcome)[1] == text
+    assert verdict(outcome)[1] == text
 
 
 def test_a_run_that_broke_down_is_drawn_until_there(log, picture, tmp_path):

@@ -99,8 +99,9 @@ def test_every_dataset_has_unit_description_and_checksum(tmp_path):
             assert file[name].attrs["description"] == spec.description
             if file[name].shape:
                 assert file[name].fletcher32
-                assert file[name].shuffle
-                assert (file[name].compression, file[name].compression_opts) == ("gzip", 4)
+                plain = spec.dtype == "<f8"  # gzip gains little there, and takes long
+                assert file[name].shuffle != plain
+                assert file[name].compression == (None if plain else "gzip")
 
 
 def test_chunks_are_whole_rows_of_about_a_mebibyte(tmp_path):

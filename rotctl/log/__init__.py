@@ -6,9 +6,9 @@
 
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.provenance import collect
-from rotctl.log.reader import RunLog
+from rotctl.log.reader import RunLog, read_attributes
 from rotctl.log.schema import SCHEMA, SCHEMA_VERSION, DatasetSpec
-from rotctl.log.writer import encode_run, write_run
+from rotctl.log.writer import encode_run, write_log, write_run
 
 __all__ = [
     "SCHEMA",
@@ -18,5 +18,7 @@ __all__ = [
     "TrajectoryBuffer",
     "collect",
     "encode_run",
+    "read_attributes",
+    "write_log",
     "write_run",
 ]

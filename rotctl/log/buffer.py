@@ -9,6 +9,7 @@ groups cannot collide::
 """
 
 from dataclasses import dataclass, field, make_dataclass
+from functools import cache
 from math import prod
 from typing import Any
 
@@ -145,7 +146,12 @@ def _record(group: str, arrays: dict[str, NDArray[Any]]) -> Any:
         for name, array in arrays.items()
         if name.startswith(f"{group}/")
     }
-    return make_dataclass(group, members, frozen=True, slots=True)(**members)
+    return _record_type(group, tuple(members))(**members)
+
+
+@cache
+def _record_type(group: str, members: tuple[str, ...]) -> type[Any]:
+    return make_dataclass(group, members, frozen=True, slots=True)
 
 
 def _event_bytes(text: str) -> bytes:

@@ -3,6 +3,7 @@
 import os
 import platform
 import subprocess
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ _GIT_TIMEOUT = 10.0  # [s]
 
 def collect() -> dict[str, Any]:
     """Returns ``versions``, ``git_commit``, ``git_dirty`` and ``machine``, ready for a log."""
-    commit, dirty = _source(Path(rotctl.__file__).resolve().parent)
+    commit, dirty = _own_source()
     return {
         "versions": _versions(),
         "git_commit": commit,
@@ -29,6 +30,7 @@ def _versions() -> dict[str, str]:
     return own | {package: _version(package) for package in _PACKAGES}
 
 
+@cache
 def _version(package: str) -> str:
     try:
         return metadata.version(package)
@@ -36,6 +38,7 @@ def _version(package: str) -> str:
         return "not installed"
 
 
+@cache
 def _machine() -> dict[str, str | int]:
     return {
         "platform": platform.platform(),
@@ -51,6 +54,12 @@ def _cpu_model(cpuinfo: Path = Path("/proc/cpuinfo")) -> str:
         lines = []
     models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     return models[0] if models else platform.processor() or "unknown"
+
+
+@cache
+def _own_source() -> tuple[str, bool]:
+    """Asked once: this process runs the code that it has loaded, whatever git says later."""
+    return _source(Path(rotctl.__file__).resolve().parent)
 
 
 def _source(package: Path) -> tuple[str, bool]:

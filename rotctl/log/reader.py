@@ -16,6 +16,17 @@ from rotctl.log.digest import content_sha256
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout
 
 
+def read_attributes(path: str | Path) -> dict[str, bool | int | float | str]:
+    """The root attributes alone, checked; a tenth of the work of `RunLog.open`.
+
+    Raises:
+        LogError: ``<path>: <reason>``; missing, truncated, foreign, of another version or
+            incomplete.
+    """
+    with untrusted.opened(Path(path)) as file:
+        return untrusted.root_attributes(file)
+
+
 @dataclass(frozen=True)
 class RunLog:
     """One checked log. The file is opened for each read, never held.
@@ -55,10 +66,7 @@ class RunLog:
         """
         self._require_name(name)
         with untrusted.opened(self.path) as file:
-            dataset = untrusted.dataset(file, *name.split("/"))
-            check_dataset(name, dataset.dtype, dataset.shape, self.sizes)
-            array: NDArray[Any] = np.asarray(dataset[()])
-        return array
+            return self._read(file, name)
 
     @property
     def steps(self) -> int:
@@ -120,9 +128,16 @@ class RunLog:
         Raises:
             LogError: the file is damaged.
         """
-        found = content_sha256({name: self[name] for name in SCHEMA}, self.attributes)
+        with untrusted.opened(self.path) as file:
+            arrays = {name: self._read(file, name) for name in SCHEMA}
+        found = content_sha256(arrays, self.attributes)
         if found != self.attributes["content_sha256"]:
             raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
+
+    def _read(self, file: h5py.File, name: str) -> NDArray[Any]:
+        dataset = untrusted.dataset(file, *name.split("/"))
+        check_dataset(name, dataset.dtype, dataset.shape, self.sizes)
+        return np.asarray(dataset[()])
 
     def _require_name(self, name: str) -> None:
         if name not in SCHEMA:

@@ -86,7 +86,9 @@ SCHEMA: dict[str, DatasetSpec] = {
     "contacts/position": _per_contact("m", "contact point"),
     "contacts/normal": _per_contact("1", "contact normal, out of the ground, unit vector"),
     "contacts/force_predicted": _per_contact("N", "contact force in the controller's solution"),
-    "contacts/force_realised": _per_contact("N", "contact force in the simulation"),
+    "contacts/force_realised": _per_contact(
+        "N", "contact force in the first physics step of the control step"
+    ),
     "contacts/used": DatasetSpec("?", _SLOTS, "1", "contact kept by the supervisor"),
     "solver/status": DatasetSpec(
         "i1",

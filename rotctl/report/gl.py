@@ -70,6 +70,18 @@ def try_out(name: str) -> None:
         drawing.free()
 
 
+def not_needed() -> None:
+    """Import MuJoCo without OpenGL, which also works where `MUJOCO_GL` makes no sense."""
+    before = os.environ.get(VARIABLE)
+    os.environ[VARIABLE] = "disable"
+    try:
+        import_module("mujoco")
+    finally:
+        del os.environ[VARIABLE]
+        if before is not None:
+            os.environ[VARIABLE] = before
+
+
 @contextmanager
 def context(name: str, width: int, height: int) -> Iterator[None]:
     """A current OpenGL context of a backend, for pictures of width x height pixels.

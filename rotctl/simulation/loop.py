@@ -67,6 +67,7 @@ def simulate(
     duration: float,
     capacity: int,
     progress: Callable[[], object] = lambda: None,
+    stop: Callable[[State, Excursion], bool] = lambda state, now: False,
 ) -> Outcome:
     """Run one simulation.
 
@@ -74,6 +75,7 @@ def simulate(
         duration: simulated time [s], a whole number of control periods.
         capacity: contacts a log row can hold.
         progress: called after every control step.
+        stop: asked after every control step; True ends the run there, as nothing broke.
 
     Raises:
         InputError: the duration is no whole number of control periods.
@@ -108,6 +110,9 @@ def simulate(
         realised = stepper.advance(data, decision.torque, state.contacts)
         record(buffer, i, state, now, behaviour.phase(now), decision, realised)
         progress()
+        if stop(state, now):
+            buffer = buffer.trimmed(i + 1)
+            break
     return Outcome(buffer, stepper.complaint(data), last_fallback)
 
 

@@ -1,0 +1,141 @@
+"""One frame of a run: the drawn model, its contacts and forces, and metres on the ground."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from rotctl.log import RunLog
+from rotctl.rotations import Array
+
+if TYPE_CHECKING:
+    from rotctl.report.scene import Camera, Scene
+
+FORCE_SCALE = 0.45  # [m] length of an arrow as large as the body's weight
+MAX_FORCE = 5.0  # [body weights] longer arrows are cut
+MARK_SIDE = 0.42  # [m] towards the camera from the character
+PAPER, INK, SOFT = (255, 255, 255), (28, 34, 44), (104, 114, 128)
+GOOD, BAD = (22, 122, 76), (190, 32, 38)
+MOODS = {True: GOOD, False: BAD, None: SOFT}  # of a run's verdict
+USED, UNUSED = (235, 88, 18), (138, 146, 156)
+_GROUND_INK = (108, 120, 134)
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a frame shows beside the model."""
+
+    time: float  # [s]
+    turns: float  # in-plane, since the start of the run [rev]
+    blend: float
+    contacts: Array  # (k, 3)
+    forces: Array  # (k, 3) [N]
+    used: Array  # (k,)
+
+
+def turns_done(log: RunLog) -> Array:
+    """In-plane excursion since the start of the run [rev]."""
+    angle = log["trajectory/angular_excursion"][:, 1]
+    turns: Array = (angle - angle[:1]) / (2.0 * np.pi)
+    return turns
+
+
+def moments(log: RunLog, rows: list[int]) -> list[Moment]:
+    """What is drawn over the frames of these rows."""
+    time, turns, blend = log["trajectory/time"], turns_done(log), log["trajectory/blend"]
+    filled = log["contacts/body"] >= 0
+    position, used = log["contacts/position"], log["contacts/used"]
+    force = log["contacts/force_realised"]
+    sound = filled & np.isfinite(position).all(axis=2) & np.isfinite(force).all(axis=2)
+    return [
+        Moment(
+            time=float(time[i]),
+            turns=float(turns[i]),
+            blend=float(blend[i]),
+            contacts=position[i, sound[i]].astype(float),
+            forces=force[i, sound[i]].astype(float),
+            used=used[i, sound[i]],
+        )
+        for i in rows
+    ]
+
+
+def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) -> Image.Image:
+    """A frame of `size` pixels; a stage that is larger gives smooth edges."""
+    scale = stage.width / size[0]
+    pixels, camera = stage.draw(state)
+    picture = Image.fromarray(pixels)
+    layer = Image.new("RGBA", picture.size)
+    pen = ImageDraw.Draw(layer)
+    labels = _metre_marks(pen, stage, camera, scale)
+    _contacts(pen, camera, moment, stage.weight, scale)
+    picture.paste(layer, mask=layer)
+    if picture.size != size:
+        picture = picture.resize(size, Image.Resampling.BOX)
+    pen = ImageDraw.Draw(picture)
+    for (x, y), text in labels:
+        pen.text((x, y), text, _GROUND_INK, typeface(12), anchor="ma")
+    return picture
+
+
+def _metre_marks(
+    pen: ImageDraw.ImageDraw, stage: "Scene", camera: "Camera", scale: float
+) -> list[tuple[tuple[float, float], str]]:
+    """Ticks on the ground at whole metres; returns where which label goes."""
+    x, y, _ = camera.target
+    near = y - MARK_SIDE
+    labels = []
+    for metre in range(int(np.floor(x)) - 3, int(np.ceil(x)) + 4):
+        ends = [[metre, side, stage.ground(metre, side)] for side in (near, near + 0.1)]
+        (x0, y0), (x1, y1) = camera.pixels(np.array(ends)).tolist()
+        if 0 < x0 < camera.width and y0 < camera.height:
+            pen.line([x0, y0, x1, y1], (*_GROUND_INK, 255), round(1.5 * scale))
+            if 0.05 * camera.width < x0 < 0.95 * camera.width:
+                labels.append(((x0 / scale, y0 / scale + 2), f"{metre} m"))
+    return labels
+
+
+def _contacts(
+    pen: ImageDraw.ImageDraw, camera: "Camera", moment: Moment, weight: float, scale: float
+) -> None:
+    """Dots at contacts and arrows along their forces, over the picture: never hidden by it."""
+    near = np.linalg.norm(moment.contacts - camera.target, axis=1) < 0.7 * camera.distance
+    forces = moment.forces[near] / max(weight, 1.0)
+    forces *= np.minimum(1.0, MAX_FORCE / np.linalg.norm(forces, axis=1, keepdims=True).clip(1e-9))
+    feet = camera.pixels(moment.contacts[near])
+    tips = camera.pixels(moment.contacts[near] + FORCE_SCALE * forces)
+    used = moment.used[near].astype(bool)
+    for chosen in (False, True):
+        for foot, tip in zip(feet[used == chosen], tips[used == chosen], strict=True):
+            arrow(pen, foot, tip, (*(USED if chosen else UNUSED), 215), scale)
+    for chosen in (False, True):
+        for x, y in feet[used == chosen].tolist():
+            dot(pen, x, y, 4.5 * scale, chosen)
+
+
+def dot(pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, used: bool) -> None:
+    """A contact."""
+    box = [x - radius, y - radius, x + radius, y + radius]
+    pen.ellipse(box, USED if used else UNUSED, (255, 255, 255), max(1, round(radius / 4)))
+
+
+def arrow(
+    pen: ImageDraw.ImageDraw, foot: Array, tip: Array, colour: tuple[int, ...], size: float
+) -> None:
+    """A force; nothing where it is too short to see."""
+    along = tip - foot
+    length = float(np.hypot(*along))
+    if length < 4.0 * size:
+        return
+    along = along / length
+    across = np.array([-along[1], along[0]])
+    neck = tip - 6.0 * size * along
+    pen.line([*foot, *neck], colour, round(1.5 * size))
+    corners = [tip, neck + 2.6 * size * across, neck - 2.6 * size * across]
+    pen.polygon([tuple(corner) for corner in corners], colour)
+
+
+def typeface(size: int) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
+    """The font of all words in pictures."""
+    return ImageFont.load_default(size=size)

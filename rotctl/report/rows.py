@@ -1,0 +1,61 @@
+"""Which rows of a log to show: a run that broke down ends in rows that nobody can draw."""
+
+import numpy as np
+
+from rotctl.errors import InputError, LogError
+from rotctl.log import RunLog
+from rotctl.rotations import Array
+
+MAX_POSITION = 1e5  # [m, rad] a run that broke down is shown until there
+
+
+def drawable(log: RunLog, states: Array) -> Array:
+    """Times [s] of the rows before the first that cannot be drawn.
+
+    Args:
+        states: ``trajectory/qpos`` of the log.
+
+    Raises:
+        LogError: there is none.
+    """
+    time: Array = log["trajectory/time"]
+    sound = (np.abs(states) < MAX_POSITION).all(axis=1) & np.isfinite(time)
+    last = len(time) if sound.all() else int(np.argmin(sound))
+    if last == 0:
+        raise LogError(f"{log.path}: has no step that could be drawn")
+    return time[:last]
+
+
+def window(time: Array, start: float | None, end: float | None) -> tuple[int, int]:
+    """First and last row from `start` to `end` [s]; all rows where neither is given.
+
+    Raises:
+        InputError: a time is not in the log, or start is not before end.
+    """
+    first = nearest(time, "start", float(time[0]) if start is None else start)
+    last = nearest(time, "end", float(time[-1]) if end is None else end)
+    if start is not None and end is not None and start >= end:
+        raise InputError(f"start is {start:g} s, valid: less than end = {end:g} s")
+    return first, last
+
+
+def nearest(time: Array, name: str, value: float) -> int:
+    """The row nearest to a time [s].
+
+    Raises:
+        InputError: the log does not reach there; `name` says what does not.
+    """
+    if not time[0] <= value <= time[-1] + 1e-9:
+        raise InputError(f"{name} is {value:g} s, valid: {time[0]:g} to {time[-1]:g} s")
+    return int(np.abs(time - value).argmin())
+
+
+def at_rate(time: Array, rate: float) -> list[int]:
+    """Rows nearest to the instants of a steady rate [1/s], none of them twice."""
+    count = int(np.floor((time[-1] - time[0]) * rate + 1e-6)) + 1
+    wanted = time[0] + np.arange(count) / rate
+    after = np.searchsorted(time, wanted).clip(1, max(1, len(time) - 1))
+    if len(time) == 1:
+        return [0]
+    found = np.where(wanted - time[after - 1] <= time[after] - wanted, after - 1, after)
+    return list(dict.fromkeys(found.tolist()))

@@ -1,0 +1,122 @@
+"""What plots show: signals out of a log, with their commands where the log knows them."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from rotctl.log import RunLog
+from rotctl.rotations import Array
+
+TURN = 2.0 * math.pi  # [rad]
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Signals of one run, one row a control step.
+
+    Attributes:
+        time: (n,) [s].
+        spin: (n, 3) whole-body angular velocity [rev/s]; in-plane is y.
+        turns: (n, 3) angular excursion; in-plane (y) since the start of the run [rev].
+        velocity: (n, 3) of the centre of mass [m/s].
+        blend: (n,).
+        count: (n,) contacts with the ground.
+        used: (n,) of these, kept by the supervisor.
+        commanded_spin: in-plane [rev/s]; NaN where the outcome does not tell.
+        commanded_speed: along x [m/s]; likewise.
+    """
+
+    time: Array
+    spin: Array
+    turns: Array
+    velocity: Array
+    blend: Array
+    count: Array
+    used: Array
+    commanded_spin: float
+    commanded_speed: float
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Rates of the momenta, each (n, 3), rows as in `Signals`."""
+
+    desired: Array
+    predicted: Array
+    realised: Array
+
+
+def signals(log: RunLog, rows: slice) -> Signals:
+    """The signals of some rows."""
+    turns = log["trajectory/angular_excursion"] / TURN
+    turns[:, 1] -= turns[:1, 1]
+    filled = log["contacts/body"][rows] >= 0
+    outcome = log.outcome
+    return Signals(
+        time=log["trajectory/time"][rows],
+        spin=log["trajectory/angular_velocity"][rows] / TURN,
+        turns=turns[rows],
+        velocity=log["trajectory/com_velocity"][rows],
+        blend=log["trajectory/blend"][rows],
+        count=log["contacts/count"][rows].astype(float),
+        used=(log["contacts/used"][rows] & filled).sum(axis=1).astype(float),
+        commanded_spin=_number(outcome.get("angular_velocity_commanded")),
+        commanded_speed=_number(outcome.get("speed_commanded")),
+    )
+
+
+def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
+    """Rates of the linear momentum [N].
+
+    Args:
+        rows: which.
+        weight: (3,) of the character, m g [N].
+    """
+    return Rates(
+        desired=log["trajectory/linear_momentum_rate_desired"][rows],
+        predicted=log["trajectory/linear_momentum_rate_predicted"][rows],
+        realised=_forces(log, rows).sum(axis=1) + weight,
+    )
+
+
+def angular_rates(log: RunLog, rows: slice) -> Rates:
+    """Rates of the angular momentum about the centre of mass [N m]."""
+    arms = log["contacts/position"][rows].astype(float) - log["trajectory/com"][rows, None]
+    return Rates(
+        desired=log["trajectory/angular_momentum_rate_desired"][rows],
+        predicted=log["trajectory/angular_momentum_rate_predicted"][rows],
+        realised=np.cross(arms, _forces(log, rows)).sum(axis=1),
+    )
+
+
+def torque_fractions(log: RunLog, rows: slice) -> dict[str, Array]:
+    """Largest |torque| / limit (n,) in each group of joints; left and right together."""
+    names = [name.decode("utf-8", "replace") for name in log["model/joint"].tolist()]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fraction = np.abs(log["trajectory/ctrl"][rows]) / log["model/torque_limit"]
+    groups: dict[str, list[int]] = {}
+    for i, name in enumerate(names):
+        groups.setdefault(joint_group(name), []).append(i)
+    return {group: fraction[:, members].max(axis=1) for group, members in groups.items()}
+
+
+def joint_group(name: str) -> str:
+    """``hip_y_l`` and ``hip_x_r`` are both ``hip``."""
+    for side in ("_l", "_r"):
+        name = name.removesuffix(side)
+    for axis in ("_x", "_y", "_z"):
+        name = name.removesuffix(axis)
+    return name
+
+
+def _forces(log: RunLog, rows: slice) -> Array:
+    """Realised contact forces (n, capacity, 3) [N]; zero in empty slots."""
+    filled = log["contacts/body"][rows] >= 0
+    forces: Array = np.where(filled[..., None], log["contacts/force_realised"][rows], 0.0)
+    return forces.astype(float)
+
+
+def _number(value: object) -> float:
+    fits = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e9
+    return float(value) if fits and isinstance(value, int | float) else math.nan

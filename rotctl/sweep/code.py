@@ -1,0 +1,27 @@
+"""Which code made a run, as one text: what differs in it may differ in the numbers."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from rotctl.errors import LogError
+
+
+def code_version(attributes: Mapping[str, Any]) -> str:
+    """The code behind a log.
+
+    Args:
+        attributes: of a log, or what `rotctl.log.collect` returns.
+
+    Raises:
+        LogError: the versions in it are not what rotctl writes.
+    """
+    versions = attributes["versions"]
+    try:
+        versions = json.loads(versions) if isinstance(versions, str) else versions
+        own, physics = versions["rotctl"], versions["mujoco"]
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise LogError("versions are not those of a rotctl log") from None
+    commit = str(attributes["git_commit"])[:7]
+    changed = " with changes" if attributes["git_dirty"] else ""
+    return f"rotctl {own} ({commit}{changed}), mujoco {physics}"

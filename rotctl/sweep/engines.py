@@ -1,0 +1,88 @@
+"""Where tasks run: in processes here, or on the workers of a Dask scheduler; one contract."""
+
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+from rotctl.errors import InputError, RotctlError
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why a task gave no result.
+
+    Attributes:
+        reason: one line.
+    """
+
+    reason: str
+
+
+class Engine(Protocol):
+    """Something that runs tasks; close it when done, and what still runs is dropped."""
+
+    @property
+    def where(self) -> str:
+        """Where the tasks run, for people."""
+        ...
+
+    @property
+    def workers(self) -> int:
+        """How many tasks run at once, as far as is known now; 0 if no worker has come yet."""
+        ...
+
+    def map(
+        self, task: Callable[[T], R], items: Sequence[T], retries: int
+    ) -> Generator[tuple[int, R | Failure], None, None]:
+        """Yield (index, result) in order of completion, each index once.
+
+        An exception in a task is a `Failure` at once, as it would come again. A worker that
+        dies is replaced, and its task tried again; a `Failure` when no try is left. Close the
+        generator to drop what still runs.
+
+        Args:
+            task: picklable, and at home in a module that the workers can import.
+            items: picklable.
+            retries: further tries for a task whose worker died, >= 0.
+        """
+        ...
+
+    def close(self) -> None:
+        """Let the workers go."""
+        ...
+
+
+def make_engine(jobs: int | None, scheduler: str | None) -> Engine:
+    """Local processes, or the workers of a Dask scheduler.
+
+    Args:
+        jobs: number of local processes; None: one for each CPU that this process may use.
+        scheduler: address of a Dask scheduler, such as `tcp://127.0.0.1:8786`; None: local.
+
+    Raises:
+        InputError: a bad number or address, Dask is not installed, or nobody answers there.
+    """
+    if scheduler is None:
+        from rotctl.sweep.local import LocalEngine
+
+        return LocalEngine(jobs)
+    if jobs is not None:
+        raise InputError(
+            f"--jobs={jobs}: is for local processes; with --scheduler, start as many workers"
+        )
+    from rotctl.sweep.cluster import connect
+
+    return connect(scheduler)
+
+
+def attempt(task: Callable[[T], R], item: T) -> R | Failure:
+    """Run a task in a worker; what it raises is its `Failure`."""
+    try:
+        return task(item)
+    except RotctlError as error:
+        return Failure(str(error))
+    except Exception as error:
+        return Failure(" ".join(f"{type(error).__name__}: {error}".split()))

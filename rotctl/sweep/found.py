@@ -1,0 +1,100 @@
+"""The runs below a folder, one by one: those with a log, and those that should have one.
+
+Only the root attributes of a log are read, not its trajectory: a millisecond or two a run.
+"""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from rotctl.errors import InputError, LogError
+from rotctl.log import read_attributes
+from rotctl.run import LOG_NAME
+from rotctl.sweep.code import code_version
+from rotctl.sweep.manifest import MANIFEST_NAME, Entry, read
+
+DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
+
+
+@dataclass(frozen=True)
+class Found:
+    """A run below the folder, or the place of one.
+
+    Attributes:
+        status: `done`, `failed to run`, `not run` or `damaged`.
+        reason: why there is no result, if that is known.
+        outcome: the summary row; empty if there is no result.
+        code: the code that made it.
+        log: its log, relative to the folder.
+        config: its config, as YAML.
+        values: what the sweep says of its config, if a sweep made it.
+    """
+
+    run_id: str
+    status: str
+    reason: str = ""
+    outcome: Mapping[str, Any] = field(default_factory=dict)
+    code: str = ""
+    log: str = ""
+    config: str = ""
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+def found(folder: Path) -> tuple[list[Found], list[str]]:
+    """All runs below a folder, each once, and the logs that were left out as copies.
+
+    Raises:
+        InputError: there is no such folder, no run in it, or a `sweep.jsonl` that is none.
+    """
+    if not os.path.isdir(folder):
+        raise InputError(f"{folder}: no such folder")
+    names = (LOG_NAME, MANIFEST_NAME)
+    paths = sorted(Path(at, name) for at, _, inside in os.walk(folder) for name in inside)
+    entries: dict[str, Entry] = {}
+    runs: dict[str, Found] = {}
+    copies = []
+    for path in (path for path in paths if path.name in names):
+        if path.name == MANIFEST_NAME:
+            entries |= read(path.parent)
+            continue
+        run = _logged(path, str(path.relative_to(folder)))
+        if run.run_id in runs and runs[run.run_id].status == DONE:
+            copies.append(f"{path}: is the run of {runs[run.run_id].log} again, counted once")
+        else:
+            runs[run.run_id] = run
+    missing = [_unlogged(entry) for name, entry in entries.items() if name not in runs]
+    if not runs and not missing:
+        raise InputError(f"{folder}: no runs in it; rotctl sweep --out {folder} makes some")
+    known = [_with_values(run, entries) for run in runs.values()]
+    return known + missing, copies
+
+
+def _logged(path: Path, log: str) -> Found:
+    try:
+        attributes = read_attributes(path)
+        outcome = json.loads(str(attributes["outcome"]))
+        if not isinstance(outcome, dict):
+            raise LogError("outcome is not a JSON object")
+        return Found(
+            str(attributes["run_id"]),
+            DONE,
+            outcome=outcome,
+            code=code_version(attributes),
+            log=log,
+            config=str(attributes["config"]),
+        )
+    except (LogError, ValueError, RecursionError) as error:
+        return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
+
+
+def _unlogged(entry: Entry) -> Found:
+    status = FAILED if entry.failure else MISSING
+    return Found(entry.run_id, status, entry.failure, values=entry.values)
+
+
+def _with_values(run: Found, entries: Mapping[str, Entry]) -> Found:
+    entry = entries.get(run.run_id)
+    return replace(run, values=entry.values) if entry else run

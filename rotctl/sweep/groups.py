@@ -1,0 +1,176 @@
+"""Success rates with their uncertainty, and quartiles, by group; for people and for programs."""
+
+import os
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib.util import find_spec
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from rotctl.errors import InputError
+from rotctl.sweep.found import DONE
+from rotctl.sweep.table import Table
+
+Z_95 = 1.959963984540054  # two-sided 95 % of the normal distribution
+QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
+
+
+@dataclass(frozen=True)
+class Groups:
+    """Groups as rows.
+
+    Attributes:
+        rows: the keys, `n`, `succeeded`, `success_rate`, `success_low`, `success_high`,
+            `no_result`, and `_q25`, `_median`, `_q75` of every metric.
+        keys: the columns that name a group.
+        metrics: those that were measured.
+        notes: what a reader should know, one line each.
+    """
+
+    rows: pd.DataFrame
+    keys: list[str]
+    metrics: list[str]
+    notes: list[str]
+
+
+def wilson(succeeded: int, n: int, z: float = Z_95) -> tuple[float, float]:
+    """Wilson's score interval of a rate; all of [0, 1] if nothing was tried."""
+    if n == 0:
+        return 0.0, 1.0
+    rate, share = succeeded / n, z * z / n
+    middle = (rate + share / 2) / (1 + share)
+    half = z / (1 + share) * sqrt(rate * (1 - rate) / n + share / (4 * n))
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) -> Groups:
+    """Group the runs of a table.
+
+    Args:
+        by: columns; None: all config keys but the seed.
+        mixed: average over runs of different code; otherwise `code` is one more key.
+
+    Raises:
+        InputError: there is no such column.
+    """
+    keys = list(by) if by is not None else [key for key in table.keys if key != "seed"]
+    for key in keys:
+        if key not in table.rows.columns:
+            raise InputError(f"--by: no column {key!r}; valid: {', '.join(table.rows.columns)}")
+    codes = sorted(set(table.rows["code"]) - {""})
+    notes = []
+    if len(codes) > 1:
+        how = "averaged all the same" if mixed else "kept apart; --mixed averages over them"
+        notes.append(f"made by {len(codes)} versions of the code, {how}: {'; '.join(codes)}")
+        if not mixed and "code" not in keys:
+            keys.append("code")
+    rows = [
+        dict(zip(keys, name, strict=True)) | _measured(group, table.metrics)
+        for name, group in _in_order(table.rows, keys)
+    ]
+    return Groups(pd.DataFrame(rows), keys, table.metrics, notes)
+
+
+def _in_order(rows: pd.DataFrame, keys: list[str]) -> list[tuple[tuple[object, ...], pd.DataFrame]]:
+    """Groups in the order of the table, which is sorted; runs without a value are a group too."""
+    if not keys:
+        return [((), rows)]
+    return [(name, group) for name, group in rows.groupby(keys, sort=False, dropna=False)]
+
+
+def _measured(group: pd.DataFrame, metrics: list[str]) -> dict[str, object]:
+    done = group[group["status"] == DONE]
+    n, succeeded = len(done), int(done["success"].astype(bool).sum())
+    low, high = wilson(succeeded, n)
+    row: dict[str, object] = {
+        "n": n,
+        "succeeded": succeeded,
+        "success_rate": succeeded / n if n else None,
+        "success_low": low,
+        "success_high": high,
+        "no_result": len(group) - n,
+    }
+    for metric in metrics:
+        values = pd.to_numeric(done[metric], errors="coerce")
+        for name, share in QUARTILES.items():
+            row[f"{metric}_{name}"] = values.quantile(share)
+    return row
+
+
+def markdown(groups: Groups) -> str:
+    """The groups as a Markdown table: rates in percent, metrics as median [quartiles].
+
+    Metrics with one value throughout are told below it, to keep it narrow.
+    """
+    missing = bool(groups.rows["no_result"].any())
+    rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
+    spreads = {metric: [_spread(row, metric) for row in rows] for metric in groups.metrics}
+    constant = {metric for metric, texts in spreads.items() if len(set(texts)) == 1}
+    constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
+    varying = [metric for metric in groups.metrics if metric not in constant]
+    lines = [[*groups.keys, "n", *(["no result"] if missing else []), "success [95 %]", *varying]]
+    for i, row in enumerate(rows):
+        lines.append(
+            [
+                *(_text(row[key], "g") for key in groups.keys),
+                str(row["n"]),
+                *([str(row["no_result"])] if missing else []),
+                _rate(row),
+                *(spreads[metric][i] for metric in varying),
+            ]
+        )
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    lines.insert(1, ["-" * width for width in widths])
+    table = [
+        "| " + " | ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)) + " |"
+        for line in lines
+    ]
+    same = [f"{metric} {spreads[metric][0]}" for metric in groups.metrics if metric in constant]
+    return "\n".join(table + ([f"\nThe same in all runs: {', '.join(same)}."] if same else []))
+
+
+def _rate(row: Mapping[str, Any]) -> str:
+    rate = f"{100 * row['success_rate']:.0f} %" if row["n"] else "-"
+    return f"{rate} [{100 * row['success_low']:.0f}, {100 * row['success_high']:.0f}]"
+
+
+def _spread(row: Mapping[str, Any], metric: str) -> str:
+    low, middle, high = (_text(row[f"{metric}_{name}"], ".3g") for name in QUARTILES)
+    return middle if low == middle == high else f"{middle} [{low}, {high}]"
+
+
+def _text(value: Any, form: str) -> str:
+    if value is None or value != value:
+        return "-"
+    text = format(value, form) if isinstance(value, float) else str(value)
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def written(folder: Path, runs: pd.DataFrame, groups: pd.DataFrame) -> list[Path]:
+    """Write `summary.csv`, `groups.csv`, and `summary.parquet` where pyarrow is installed.
+
+    Raises:
+        InputError: one of them cannot be written.
+    """
+    paths = [folder / "summary.csv", folder / "groups.csv"]
+    _replace(paths[0], runs.to_csv(index=False).encode())
+    _replace(paths[1], groups.to_csv(index=False).encode())
+    if find_spec("pyarrow"):
+        paths.append(folder / "summary.parquet")
+        _replace(paths[2], runs.to_parquet(index=False))
+    return paths
+
+
+def _replace(path: Path, content: bytes) -> None:
+    part = Path(f"{path}.part")
+    try:
+        part.write_bytes(content)
+        os.replace(part, path)
+    except OSError as error:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise InputError(f"cannot write {path}: {error.strerror or error}") from None

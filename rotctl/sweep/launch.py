@@ -1,0 +1,101 @@
+"""A sweep: do what is left of a folder's runs, and put each there as soon as it is done.
+
+Workers hand a run's bytes back, and the driver alone writes: the workers need no shared file
+system, and what an orphan of a killed driver still finishes cannot be published twice.
+"""
+
+from collections.abc import Callable, Iterable
+from contextlib import closing, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rotctl.errors import InputError
+from rotctl.run import Summary, broke_down, make, publish
+from rotctl.sweep import manifest
+from rotctl.sweep.engines import Engine, Failure
+from rotctl.sweep.manifest import Entry
+from rotctl.sweep.plan import Plan, Planned
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How far a sweep is.
+
+    Attributes:
+        succeeded: rolls that met their criteria.
+        fell: rolls that did not: a result, not an error.
+        broken: run id -> why there is no result: it could not be run, or the physics broke down.
+    """
+
+    succeeded: int
+    fell: int
+    broken: dict[str, str]
+
+    @property
+    def count(self) -> int:
+        """All of them."""
+        return self.succeeded + self.fell + len(self.broken)
+
+    def plus(self, run_id: str, result: Summary | Failure) -> "Tally":
+        """The tally after one more result."""
+        if isinstance(result, Failure):
+            return replace(self, broken={**self.broken, run_id: result.reason})
+        if broke_down(result):
+            reason = result["failure_reason"] or f"{result['solver_failures']} solver failures"
+            return replace(self, broken={**self.broken, run_id: reason})
+        if result["success"]:
+            return replace(self, succeeded=self.succeeded + 1)
+        return replace(self, fell=self.fell + 1)
+
+
+def tally(results: Iterable[tuple[str, Summary | Failure]]) -> Tally:
+    """Count results."""
+    counted = Tally(0, 0, {})
+    for run_id, result in results:
+        counted = counted.plus(run_id, result)
+    return counted
+
+
+def launch(
+    plan: Plan,
+    runs: list[Planned],
+    folder: Path,
+    engine: Engine,
+    retries: int,
+    progress: Callable[[Tally], object] = lambda now: None,
+) -> Tally:
+    """Do what is left; the caller holds the folder's lock.
+
+    Args:
+        runs: all of the sweep, done or not.
+        retries: further tries for a run whose worker died.
+        progress: called at the start and after every run.
+
+    Raises:
+        InputError: the folder cannot be written: the disk is full, say.
+        RotctlError: the engine is lost.
+    """
+    now = tally(plan.done.items())
+    entries = manifest.read(folder)
+    for run in runs:
+        earlier = entries[run.run_id].values if run.run_id in entries else {}
+        entries[run.run_id] = Entry(run.run_id, {**earlier, **run.values})
+    manifest.write(folder, entries.values())
+    progress(now)
+    try:
+        with closing(engine.map(make, [run.config for run in plan.left], retries)) as results:
+            for index, made in results:
+                run = plan.left[index]
+                if isinstance(made, Failure):
+                    entries[run.run_id] = replace(entries[run.run_id], failure=made.reason)
+                    now = now.plus(run.run_id, made)
+                else:
+                    publish(made, folder / run.run_id)
+                    now = now.plus(run.run_id, made.summary)
+                progress(now)
+    except BaseException:
+        with suppress(InputError):  # the first trouble is the one to tell
+            manifest.write(folder, entries.values())
+        raise
+    manifest.write(folder, entries.values())
+    return now

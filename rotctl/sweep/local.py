@@ -1,0 +1,173 @@
+"""Worker processes on this machine, one pipe each.
+
+The pools of the standard library and of loky break as a whole when one process dies, and leave
+open whose task killed it. Here a dead worker is an end of file on its own pipe: its task is
+known, and the others do not notice.
+"""
+
+import os
+import pickle
+import signal
+from collections import deque
+from collections.abc import Callable, Generator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import connection, get_context
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any, TypeVar
+
+from rotctl.errors import InputError
+from rotctl.sweep.engines import Failure, attempt
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+PATIENCE = 5.0  # [s] for a process that was told to end
+BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def cpus() -> int:
+    """How many CPUs this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class Worker:
+    """A process that takes (task, item) from its pipe and gives back results."""
+
+    process: BaseProcess
+    pipe: Connection
+
+    @classmethod
+    def start(cls) -> "Worker":
+        """Spawned, not forked: no lock or thread of this process is copied half-way."""
+        context = get_context("spawn")
+        ours, theirs = context.Pipe()
+        process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        process.start()
+        theirs.close()  # else the pipe would not end with the worker
+        return cls(process, ours)
+
+    def send(self, task: Callable[[Any], Any], item: Any) -> None:
+        """Give it something to do; a dead one is noticed when its result is read."""
+        message = pickle.dumps((task, item))
+        with suppress(OSError):
+            self.pipe.send_bytes(message)
+
+    def stop(self) -> None:
+        """End the process, busy or not."""
+        self.pipe.close()
+        self.process.terminate()
+        self.process.join(PATIENCE)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
+
+    def ending(self) -> str:
+        """How a process ended that has let go of its pipe."""
+        self.process.join(PATIENCE)
+        code = self.process.exitcode
+        self.stop()
+        if code is not None and code < 0:
+            return f"killed by {signal.Signals(-code).name}"
+        return f"exit code {code}"
+
+
+class LocalEngine:
+    """Up to `jobs` processes, started when there is work and kept for the next map."""
+
+    def __init__(self, jobs: int | None = None) -> None:
+        if jobs is not None and jobs < 1:
+            raise InputError(f"--jobs={jobs}: must be at least 1")
+        self._jobs = jobs or cpus()
+        self._idle: list[Worker] = []
+
+    @property
+    def where(self) -> str:
+        """Where the tasks run, for people."""
+        return "1 local process" if self._jobs == 1 else f"{self._jobs} local processes"
+
+    @property
+    def workers(self) -> int:
+        """How many tasks run at once."""
+        return self._jobs
+
+    def map(
+        self, task: Callable[[T], R], items: Sequence[T], retries: int
+    ) -> Generator[tuple[int, R | Failure], None, None]:
+        """As `Engine.map` has it."""
+        waiting = deque((index, 0) for index in range(len(items)))  # (index, deaths so far)
+        busy: dict[Connection, tuple[Worker, int, int]] = {}
+        try:
+            while waiting or busy:
+                while waiting and len(busy) < self._jobs:
+                    index, deaths = waiting.popleft()
+                    worker = self._idle.pop() if self._idle else _started()
+                    busy[worker.pipe] = worker, index, deaths
+                    worker.send(task, items[index])
+                for pipe in connection.wait(list(busy)):
+                    assert isinstance(pipe, Connection)
+                    worker, index, deaths = busy[pipe]
+                    try:
+                        result = pickle.loads(pipe.recv_bytes())
+                    except (EOFError, OSError):  # it died, perhaps in the middle of an answer
+                        del busy[pipe]
+                        ending = worker.ending()
+                        if deaths < retries:
+                            waiting.append((index, deaths + 1))
+                            continue
+                        result = Failure(f"its worker died: {ending}{_tries(deaths + 1)}")
+                    else:
+                        if waiting:  # it works on while the caller looks at this result
+                            following, before = waiting.popleft()
+                            busy[pipe] = worker, following, before
+                            worker.send(task, items[following])
+                        else:
+                            del busy[pipe]
+                            self._idle.append(worker)
+                    yield index, result
+        finally:
+            for worker, _, _ in busy.values():
+                worker.stop()
+
+    def close(self) -> None:
+        """End all processes."""
+        while self._idle:
+            self._idle.pop().stop()
+
+
+def _started() -> Worker:
+    """A worker with one BLAS thread: matrices are small, and runs in parallel worth more."""
+    for name in BLAS_THREADS:  # inherited, and read when numpy is first imported there
+        os.environ.setdefault(name, "1")
+    return Worker.start()
+
+
+def _serve(pipe: Connection) -> None:
+    """The life of a worker: until the driver closes the pipe, or is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the driver decides
+    while True:
+        try:
+            message = pipe.recv_bytes()
+        except (EOFError, OSError):
+            return
+        try:
+            answer = pickle.dumps(attempt(_call, message), pickle.HIGHEST_PROTOCOL)
+        except Exception as error:  # a result that cannot travel
+            answer = pickle.dumps(Failure(f"{type(error).__name__}: {error}"))
+        try:
+            pipe.send_bytes(answer)
+        except OSError:
+            return
+
+
+def _call(message: bytes) -> Any:
+    task, item = pickle.loads(message)
+    return task(item)
+
+
+def _tries(count: int) -> str:
+    return "" if count == 1 else f", the last of {count} times"

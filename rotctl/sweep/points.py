@@ -1,0 +1,138 @@
+"""Overrides in Hydra's sweep syntax -> the points of the grid, each with its checked config.
+
+Hydra composes a config in tenths of a second, which is too slow for a thousand points. So it
+composes once for each choice of groups, and single values are set on its result.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import islice, product
+from math import prod
+from typing import Any
+
+from hydra.core.override_parser.types import Glob, Override, OverrideType
+
+from rotctl.config import Config, check, composed, parsed, to_dict
+from rotctl.errors import InputError
+from rotctl.listing import choices
+
+MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class Point:
+    """One point of a grid.
+
+    Attributes:
+        overrides: one value each; `config.load` would make the same config of them.
+    """
+
+    overrides: tuple[str, ...]
+    config: Config
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Overridden key -> its value in the config, or the name of the choice of a group."""
+        data = to_dict(self.config)
+        keys = (str(_parsed(override).key_or_group) for override in self.overrides)
+        return {key: value_at(data, key) for key in keys}
+
+
+def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
+    """The points of one grid after the other, the last key of each varying fastest.
+
+    Args:
+        matrix: grids, each a list of overrides such as `seed=range(0,100)` or `start=glob(*)`.
+
+    Raises:
+        InputError: the first thing that is wrong, in one line.
+    """
+    grids = [[_values(override) for override in grid] for grid in matrix]
+    count = sum(prod(map(len, grid)) for grid in grids)
+    if count > MOST_POINTS:
+        raise InputError(f"the sweep has {count} points; at most {MOST_POINTS}, in several sweeps")
+    bases: dict[tuple[str, ...], dict[str, Any]] = {}
+    for grid in grids:
+        for overrides in product(*grid):
+            yield Point(overrides, _config(overrides, bases))
+
+
+def value_at(data: Any, key: str) -> Any:
+    """What plain config data have at a dotted key; the name, where that is a group's choice."""
+    for part in key.split("."):
+        if not isinstance(data, dict) or part not in data:
+            return None
+        data = data[part]
+    return data["name"] if isinstance(data, dict) and "name" in data else data
+
+
+_parsed = cache(parsed)
+
+
+def _values(override: str) -> list[str]:
+    """The single overrides that one with several values stands for."""
+    found = parsed(override)
+    key = str(found.key_or_group)
+    if not found.is_sweep_override():
+        return [override]
+    if not found.is_discrete_sweep():
+        raise InputError(f"{override}: has no steps; write {key}=range(start,stop,step)")
+    pattern = found.value()
+    if isinstance(pattern, Glob):
+        valid = choices(key)
+        names = pattern.filter(valid)
+        if not names:
+            some = f"no choice matches; valid: {', '.join(valid)}" if valid else "no such group"
+            raise InputError(f"{override}: {some}")
+        return [f"{found.get_key_element()}={name}" for name in names]
+    values = list(islice(found.sweep_string_iterator(), MOST_POINTS + 1))
+    if not values:
+        raise InputError(f"{override}: has no values")
+    return [f"{found.get_key_element()}={value}" for value in values]
+
+
+def _config(overrides: tuple[str, ...], bases: dict[tuple[str, ...], dict[str, Any]]) -> Config:
+    """As `config.load`, but quick where only plain values differ from an earlier point."""
+    plain = [_plain(override) for override in overrides]
+    composing = tuple(o for o, way in zip(overrides, plain, strict=True) if way is None)
+    setting = {way: _parsed(o).value() for o, way in zip(overrides, plain, strict=True) if way}
+    if any(_parsed(override).package or not _is_group(override) for override in composing):
+        return check(composed(list(overrides)))  # their order may matter
+    if composing not in bases:
+        bases[composing] = composed(list(composing))
+    data = bases[composing]
+    for way, value in setting.items():
+        if not _is_leaf(data, way):
+            return check(composed(list(overrides)))  # a new key, or an error for Hydra to tell
+        data = _set(data, way, value)
+    return check(data)
+
+
+def _plain(override: str) -> tuple[str, ...] | None:
+    """The way to the value that an override sets, if setting is all it does."""
+    found = _parsed(override)
+    if found.type != OverrideType.CHANGE or found.package or _is_group(override):
+        return None
+    if isinstance(found.value(), dict):
+        return None
+    return tuple(str(found.key_or_group).split("."))
+
+
+def _is_group(override: str) -> bool:
+    found: Override = _parsed(override)
+    return bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
+
+
+def _is_leaf(data: Any, way: tuple[str, ...]) -> bool:
+    for part in way:
+        if not isinstance(data, dict) or part not in data:
+            return False
+        data = data[part]
+    return not isinstance(data, dict)
+
+
+def _set(data: dict[str, Any], way: tuple[str, ...], value: Any) -> dict[str, Any]:
+    """A copy of `data` with another value at `way`; what does not change is shared."""
+    first, *rest = way
+    return {**data, first: _set(data[first], tuple(rest), value) if rest else value}

@@ -1,0 +1,75 @@
+"""What a sweep says before and after: what there is to do, what was found, what failed."""
+
+import json
+import os
+import shlex
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from rotctl.run import LOG_NAME, make
+from rotctl.sweep.launch import Tally
+from rotctl.sweep.plan import Plan, Planned
+from rotctl.sweep.progress import duration
+
+FEW = 5  # runs of a dry run that are listed
+TRIAL = 2.0  # [s] of simulated time, to estimate the whole
+
+
+def without_running(runs: list[Planned], folder: Path, workers: int) -> str:
+    """What there is to do, with an estimate of the time from a short trial of the first run.
+
+    Raises:
+        InputError: the first run cannot be simulated.
+    """
+    left = [run for run in runs if not os.path.lexists(folder / run.run_id / LOG_NAME)]
+    lines = [f"{len(runs)} runs, {len(left)} of them not yet in {folder}"]
+    lines += [f"  {run.run_id}  {_values(run)}" for run in left[:FEW]]
+    if len(left) > FEW:
+        lines.append(f"  ... and {len(left) - FEW} more")
+    if left:
+        config = left[0].config
+        rate = config.controller.rate
+        short = replace(config, duration=min(config.duration, round(TRIAL * rate) / rate))
+        begin = time.perf_counter()
+        make(short)
+        cost = (time.perf_counter() - begin) / short.duration
+        seconds = cost * sum(run.config.duration for run in left) / max(1, workers)
+        on = f"{max(1, workers)} worker{'s' * (workers > 1)}"
+        lines.append(f"about {duration(seconds)} on {on}, if they are as fast as this machine")
+    return "\n".join(lines)
+
+
+def at_the_start(plan: Plan, folder: Path, where: str) -> str:
+    """What was found in the folder, and what will be done where."""
+    lines = [f"simulated again: {reason}" for reason in plan.replaced]
+    for code, count in plan.other_code.items():
+        lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")
+    there = f", {len(plan.done)} are there already" if plan.done else ""
+    lines.append(f"{len(plan.left)} runs to do in {folder}{there}; on {where}")
+    return "\n".join(lines)
+
+
+def at_the_end(now: Tally, plan: Plan, folder: Path) -> str:
+    """The result in a line, and where to look next."""
+    before = f", {len(plan.done)} of them were there before" if plan.done else ""
+    return (
+        f"{now.count} runs: {now.succeeded} succeeded, {now.fell} did not, "
+        f"{len(now.broken)} failed to run{before}\n"
+        f"next       rotctl summarise {shlex.quote(str(folder))}"
+    )
+
+
+def failures(now: Tally, runs: list[Planned]) -> str:
+    """All runs without a result and why, one a line, in the order of the sweep."""
+    listed = [run for run in runs if run.run_id in now.broken]
+    lines = [f"  {run.run_id}  {_values(run)}: {now.broken[run.run_id]}" for run in listed]
+    count = f"{len(listed)} run{'s' * (len(listed) > 1)}"
+    return "\n".join([f"{count} failed to run:", *lines])
+
+
+def _values(run: Planned) -> str:
+    return " ".join(
+        f"{key}={value if isinstance(value, str) else json.dumps(value)}"
+        for key, value in run.values.items()
+    )

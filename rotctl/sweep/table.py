@@ -1,0 +1,140 @@
+"""Runs as one tidy table: a row a run, also where there is no result; config keys as columns."""
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import yaml
+
+from rotctl.sweep.found import DAMAGED, FAILED, MISSING, Found, found
+from rotctl.sweep.points import value_at
+
+SUMMARY_TEXT = ("run_id", "behaviour", "seed", "success", "failure_reason")
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_SEED = re.compile(r"^seed: (\d+)\n", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Table:
+    """Runs as rows.
+
+    Attributes:
+        rows: `run_id`, `status`, the keys, the summary, `code` and `log`.
+        keys: the columns that are config keys: what was overridden, and what differs.
+        metrics: the columns that were measured.
+        notes: what a reader should know, one line each.
+    """
+
+    rows: pd.DataFrame
+    keys: list[str]
+    metrics: list[str]
+    notes: list[str]
+
+
+def table(folder: Path) -> Table:
+    """All runs below a folder, in the order of their keys.
+
+    Raises:
+        InputError: there is no such folder, or no run in it.
+    """
+    runs, notes = found(folder)
+    configs = {run.run_id: _config(run.config) for run in runs if run.config}
+    keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
+    keys += [key for key in _differing(configs.values()) if key not in keys]
+    keys = [*(key for key in keys if key != "seed"), "seed"]
+    metrics = list(dict.fromkeys(k for run in runs for k in run.outcome if k not in SUMMARY_TEXT))
+    columns = {key: f"config.{key}" if key in metrics else key for key in keys}
+    rows = []
+    for run in runs:
+        data = configs.get(run.run_id)
+        values = {k: value_at(data, k) if data else run.values.get(k) for k in keys}
+        rows.append(
+            {
+                "run_id": run.run_id,
+                "status": run.status,
+                **{columns[key]: _cell(value) for key, value in values.items()},
+                "success": run.outcome.get("success"),
+                "failure_reason": run.outcome.get("failure_reason", run.reason),
+                **{name: run.outcome.get(name) for name in metrics},
+                "code": run.code,
+                "log": run.log,
+            }
+        )
+    rows.sort(key=lambda row: [_order(row[name]) for name in [*columns.values(), "run_id"]])
+    return Table(pd.DataFrame(rows), list(columns.values()), metrics, notes + _missing(runs))
+
+
+def _missing(runs: Iterable[Found]) -> list[str]:
+    notes = [
+        f"{run.run_id}: {run.status}: {run.reason}"
+        for run in runs
+        if run.status in (FAILED, DAMAGED)
+    ]
+    count = sum(run.status == MISSING for run in runs)
+    if count:
+        many = f"{count} runs of the sweep are" if count > 1 else "1 run of the sweep is"
+        notes.append(f"{many} not there; the same command does what is left")
+    return notes
+
+
+def _config(text: str) -> dict[str, Any]:
+    """The config of a log; runs differ mostly in their seed, so the rest is parsed once."""
+    seed = _SEED.search(text)
+    if not seed:
+        return _parsed(text)
+    return {**_parsed(_SEED.sub("", text)), "seed": int(seed[1])}
+
+
+@cache
+def _parsed(text: str) -> dict[str, Any]:
+    try:
+        data = yaml.load(text, Loader=_LOADER)
+    except yaml.YAMLError:
+        return {}
+    return data if isinstance(data, dict) else {}
+
+
+def _differing(configs: Iterable[Mapping[str, Any]]) -> list[str]:
+    """The keys in which configs differ; within a group, among those of the same choice."""
+    distinct = list({id(config): config for config in configs}.values())
+    keys: list[str] = []
+    for part in dict.fromkeys(part for config in distinct for part in config):
+        choices: dict[Any, list[Any]] = {}
+        for config in distinct:
+            value = config.get(part)
+            name = _cell(value["name"]) if isinstance(value, dict) and "name" in value else None
+            choices.setdefault(name, []).append(value)
+        keys += [part] if len(choices) > 1 else []
+        for same in choices.values():
+            keys += _leaves_that_differ(part, same)
+    return list(dict.fromkeys(keys))
+
+
+def _leaves_that_differ(key: str, values: list[Any]) -> list[str]:
+    first = values[0]
+    if all(value is first or value == first for value in values):
+        return []
+    if not all(isinstance(value, dict) for value in values):
+        return [key]
+    parts = dict.fromkeys(part for value in values for part in value)
+    return [
+        leaf
+        for part in parts
+        for leaf in _leaves_that_differ(f"{key}.{part}", [value.get(part) for value in values])
+    ]
+
+
+def _cell(value: Any) -> Any:
+    return json.dumps(value) if isinstance(value, list | tuple | dict) else value
+
+
+def _order(value: Any) -> tuple[int, Any]:
+    """Numbers before text, and what is not there last; each in its own order."""
+    if value is None:
+        return 2, ""
+    return (1, value) if isinstance(value, str) else (0, value)

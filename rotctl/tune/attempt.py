@@ -1,0 +1,65 @@
+"""One training run, cut as soon as it is hopeless: the task that the engines carry out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import acos, degrees, pi
+
+from rotctl.config import Config
+from rotctl.mechanics.excursion import Excursion
+from rotctl.mechanics.state import State
+from rotctl.metrics.rolling import measure
+from rotctl.run import in_memory
+from rotctl.scenario import build
+from rotctl.tune.objective import Rolled
+from rotctl.tune.space import Stopping
+
+Stop = Callable[[State, Excursion], bool]
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A run to be tried."""
+
+    config: Config
+    stopping: Stopping
+
+
+def attempt(item: Attempt) -> Rolled:
+    """Simulate one run in memory.
+
+    Raises:
+        InputError: the config does not make a run.
+    """
+    config = item.config
+    scenario = build(config)
+    commanded, period = config.behaviour.angular_velocity, 1.0 / config.controller.rate
+    buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
+    metrics = measure(buffer.arrays(), config.criteria, commanded, period)
+    return Rolled(
+        survived=metrics.duration,
+        wanted=config.duration,
+        revolutions=metrics.revolutions,
+        drift=metrics.lateral_drift,
+        heading=metrics.heading_error_end,
+    )
+
+
+def hopeless(stopping: Stopping, commanded: float) -> Stop:
+    """A test for one run: has it stalled, or left its axis?
+
+    Args:
+        stopping: the limits.
+        commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
+    """
+    direction = -1.0 if commanded < 0 else 1.0
+    mark: tuple[float, float] | None = None  # progress [rev] and time [s] when it last grew
+
+    def stop(state: State, now: Excursion) -> bool:
+        nonlocal mark
+        progress = direction * float(now.angle[1]) / (2.0 * pi)
+        if mark is None or progress >= mark[0] + stopping.stall_progress:
+            mark = progress, state.time
+        off_axis = degrees(acos(min(max(float(state.lateral_axis[1]), -1.0), 1.0)))
+        return state.time - mark[1] >= stopping.stall_time or off_axis >= stopping.off_axis
+
+    return stop

@@ -1,0 +1,131 @@
+"""What was tried, on disk: an Optuna study in SQLite that holds finished trials only.
+
+A kill at any time loses the candidates that were being tried and nothing else. The file can
+be opened with Optuna's own tools, such as optuna-dashboard.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rotctl.errors import InputError
+from rotctl.tune.sampler import distributions
+from rotctl.tune.space import Space
+from rotctl.tune.values import Values
+
+if TYPE_CHECKING:
+    from optuna import Study
+
+STUDY_NAME = "study.db"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A candidate and how it did.
+
+    Attributes:
+        generation, index: which it was, counted from 0.
+        score: over its runs; see `objective`.
+        finished: fraction of its runs that were not cut.
+        lost: runs whose worker died every time.
+        seconds: since the generation began, when its last run was done [s].
+    """
+
+    generation: int
+    index: int
+    values: Values
+    score: float
+    finished: float
+    lost: int
+    seconds: float
+
+
+class History:
+    """The trials of one search in one folder."""
+
+    def __init__(self, study: "Study", space: Space) -> None:
+        self._study = study
+        self._distributions = distributions(space)
+
+    def add(self, trial: Trial) -> None:
+        """Remember a finished trial."""
+        from optuna.trial import create_trial
+
+        facts = asdict(trial)
+        del facts["values"], facts["score"]
+        self._study.add_trial(
+            create_trial(
+                params=trial.values,
+                distributions=self._distributions,
+                value=trial.score,
+                user_attrs=facts,
+            )
+        )
+
+    def trials(self) -> list[Trial]:
+        """All trials, by generation and index."""
+        found = (
+            Trial(values=dict(t.params), score=float(t.value or 0.0), **t.user_attrs)
+            for t in self._study.get_trials(deepcopy=False)
+        )
+        return sorted(found, key=lambda trial: (trial.generation, trial.index))
+
+
+def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> History:
+    """The history in a folder, new or to be continued.
+
+    Args:
+        identity: all that makes the search what it is, as plain data.
+
+    Raises:
+        InputError: the folder cannot be written, or holds another search.
+    """
+    import optuna
+    from sqlalchemy.exc import SQLAlchemyError
+
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    path = folder / STUDY_NAME
+    try:
+        study = optuna.create_study(
+            storage=f"sqlite:///{path.resolve()}",
+            study_name="rotctl tune",
+            direction="maximize",
+            load_if_exists=True,
+        )
+        before = study.user_attrs.get("identity")
+        plain = json.loads(json.dumps(identity))
+        if before is None:
+            study.set_user_attr("identity", plain)
+    except (SQLAlchemyError, OSError, RuntimeError) as error:
+        reason = str(getattr(error, "orig", None) or error).splitlines()[0]
+        raise InputError(f"cannot use {path}: {reason}") from None
+    changed = [] if before is None else list(_differences(before, plain))
+    if changed:
+        raise InputError(f"{folder} holds another search, with {changed[0]}; choose another --out")
+    return History(study, space)
+
+
+def by_generation(trials: list[Trial], population: int) -> tuple[list[list[Trial]], list[Trial]]:
+    """The complete generations, and the trials of the one that was interrupted."""
+    groups = [
+        [trial for trial in trials if trial.generation == generation]
+        for generation in range(1 + max((trial.generation for trial in trials), default=-1))
+    ]
+    if groups and len(groups[-1]) < population:
+        return groups[:-1], groups[-1]
+    return groups, []
+
+
+def _differences(before: Any, now: Any, where: str = "") -> Iterator[str]:
+    """What was otherwise, `key=value (now value)`."""
+    if isinstance(before, dict) and isinstance(now, dict):
+        for key in [*before, *(key for key in now if key not in before)]:
+            inner = f"{where}.{key}" if where else str(key)
+            yield from _differences(before.get(key), now.get(key), inner)
+    elif isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
+        for i, pair in enumerate(zip(before, now, strict=True)):
+            yield from _differences(*pair, f"{where}[{i}]")
+    elif before != now:
+        yield f"{where}={json.dumps(before)} (now {json.dumps(now)})"

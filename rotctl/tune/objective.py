@@ -1,0 +1,60 @@
+"""What a run is worth, and a candidate over its runs."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rotctl.tune.space import Objective
+
+
+@dataclass(frozen=True)
+class Rolled:
+    """How one run went.
+
+    Attributes:
+        survived: simulated until it was cut, broke down or ended [s].
+        wanted: simulated time asked for [s].
+        revolutions: in-plane, in the direction commanded [rev].
+        drift: largest distance from the line of travel [m].
+        heading: of the trunk's lateral axis at the end, against the rolling axis [deg].
+    """
+
+    survived: float
+    wanted: float
+    revolutions: float
+    drift: float
+    heading: float
+
+    @property
+    def to_the_end(self) -> bool:
+        """Whether it was neither cut nor broke down."""
+        return self.survived >= self.wanted - 1e-6
+
+
+LOST = Rolled(0.0, 1.0, 0.0, 0.0, 0.0)  # a run whose worker died every time: worth nothing
+
+
+def score(run: Rolled, objective: Objective) -> float:
+    """What a run is worth; a perfect one `objective.survival + objective.progress`.
+
+    A number that a broken-down run does not have counts for nothing.
+    """
+    paced = run.revolutions / (objective.pace * run.wanted)
+    value = (
+        objective.survival * run.survived / run.wanted
+        + objective.progress * min(max(paced, 0.0), 1.0)
+        - objective.drift * abs(run.drift)
+        - objective.heading * abs(run.heading)
+    )
+    return value if math.isfinite(value) else 0.0
+
+
+def overall(runs: Sequence[Rolled], objective: Objective) -> float:
+    """The score of a candidate over its runs."""
+    scores = [score(run, objective) for run in runs]
+    return min(scores) if objective.over_runs == "worst" else math.fsum(scores) / len(scores)
+
+
+def finished(runs: Sequence[Rolled]) -> float:
+    """The fraction of runs that were not cut."""
+    return sum(run.to_the_end for run in runs) / len(runs)

@@ -1,0 +1,236 @@
+"""What a search may change, on which runs, and how it is scored: `conf/tune/NAME.yaml`."""
+
+import re
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import yaml
+from pydantic import AfterValidator, Field, Strict, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.errors import InputError
+from rotctl.listing import conf_dir
+from rotctl.settings import STRICT, Finite, NonNegative, Positive
+
+TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
+_KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d+\])?")
+_DRAWN = re.compile(r"[+~]*seed\b")
+
+SamplerName = Literal["cmaes", "tpe"]
+Count = Annotated[int, Strict(), Field(ge=1, le=10_000)]
+
+
+def _training(seed: int) -> int:
+    if seed < TRAINING_SEEDS:
+        raise ValueError(f"training seeds start at {TRAINING_SEEDS:,}; those below are for judging")
+    return seed
+
+
+def unseeded(overrides: list[str]) -> list[str]:
+    """The overrides, none of which may choose the seeds of runs.
+
+    Raises:
+        ValueError: one does.
+    """
+    for override in overrides:
+        if _DRAWN.match(override):
+            raise ValueError(
+                f"{override}: tune draws the seeds of its runs itself, from {TRAINING_SEEDS:,} "
+                "on; those below are for judging"
+            )
+    return overrides
+
+
+Overrides = Annotated[list[str], AfterValidator(unseeded)]
+
+
+@validated(frozen=True, config=STRICT)
+class Parameter:
+    """One number of the config that the search may change.
+
+    Attributes:
+        key: dotted, an element of a list in brackets: `controller.gains.linear_damping[0]`.
+        low, high: its range, in `unit`.
+        scale: `log` for what is known only to a factor.
+        reason: for the range.
+    """
+
+    key: str
+    low: Finite
+    high: Finite
+    unit: str
+    scale: Literal["linear", "log"] = "linear"
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        if not _KEY.fullmatch(self.key):
+            raise ValueError("key must be dotted names, as in controller.gains.linear_damping[0]")
+        if self.low >= self.high:
+            raise ValueError(f"low={self.low:g} must be below high={self.high:g}")
+        if self.scale == "log" and self.low <= 0:
+            raise ValueError(f"low={self.low:g} must be above 0 on a log scale")
+
+
+@validated(frozen=True, config=STRICT)
+class Objective:
+    """Weights of a run's score, and how the scores of runs make that of a candidate.
+
+    Attributes:
+        over_runs: `mean` is the usual; `worst` asks for the same on every start.
+        survival: on the fraction of the time before the run was cut [-].
+        progress: on the revolutions, as a fraction of those at `pace` [-].
+        pace: revolutions a second that earn full marks, and no more than that [rev/s].
+        drift: taken off for each metre of lateral drift [1/m].
+        heading: taken off for each degree of heading error at the end [1/deg].
+    """
+
+    over_runs: Literal["mean", "worst"]
+    survival: NonNegative
+    progress: NonNegative
+    pace: Positive
+    drift: NonNegative
+    heading: NonNegative
+
+
+@validated(frozen=True, config=STRICT)
+class Stopping:
+    """When a run is hopeless and is cut.
+
+    Attributes:
+        stall_time: without `stall_progress` [s].
+        stall_progress: in-plane, in the direction commanded [rev].
+        off_axis: of the trunk's lateral axis from the rolling axis [deg].
+    """
+
+    stall_time: Positive
+    stall_progress: Positive
+    off_axis: Annotated[Positive, Field(le=180)]
+
+
+@validated(frozen=True, config=STRICT)
+class Runs:
+    """The runs of one candidate; run i takes seed i of its generation and variation i.
+
+    Attributes:
+        seeds: number of runs, each from another start; fresh ones every generation.
+        duration: simulated time of each [s].
+        first_seed: of the training seeds.
+        variations: lists of overrides, gone through again and again; [] is no change.
+        final: runs on further training seeds that choose between the last candidates.
+    """
+
+    seeds: Count
+    duration: Positive
+    final: Count
+    first_seed: Annotated[int, Strict(), AfterValidator(_training)] = TRAINING_SEEDS
+    variations: Annotated[tuple[Overrides, ...], Field(min_length=1)] = ([],)
+
+
+@validated(frozen=True, config=STRICT)
+class Sampler:
+    """How candidates are proposed.
+
+    Attributes:
+        name: `cmaes` moves a normal distribution, `tpe` models good and bad regions.
+        population: candidates in a generation.
+        sigma: standard deviation at the start, as a fraction of each range; `cmaes` only.
+    """
+
+    name: SamplerName
+    population: Annotated[int, Strict(), Field(ge=4, le=1000)]
+    sigma: Annotated[Positive, Field(le=1)]
+
+
+@validated(frozen=True, config=STRICT)
+class Space:
+    """A search; see `docs/tuning.md`.
+
+    Attributes:
+        base: overrides that make the config to start from.
+        trials: candidates, where the command line names no other budget.
+    """
+
+    name: Annotated[str, Field(pattern=r"^[A-Za-z]\w*$")]
+    title: str
+    base: Overrides
+    parameters: Annotated[list[Parameter], Field(min_length=2)]
+    runs: Runs
+    objective: Objective
+    stopping: Stopping
+    sampler: Sampler
+    trials: Annotated[int, Strict(), Field(ge=1)]
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        keys = [parameter.key for parameter in self.parameters]
+        twice = next((key for key in keys if keys.count(key) > 1), None)
+        if twice:
+            raise ValueError(f"parameters name {twice} twice")
+
+
+_ADAPTER = TypeAdapter(Space)
+_PARTS: dict[object, type] = {
+    "parameters": Parameter,
+    "runs": Runs,
+    "objective": Objective,
+    "stopping": Stopping,
+    "sampler": Sampler,
+}
+
+_WORDS = {
+    "dataclass_type": "must be keys with values",
+    "string_pattern_mismatch": "must be letters, digits and _, a letter first",
+    "too_short": "too few, at least {min_length}",
+}
+
+
+def names() -> list[str]:
+    """The spaces that come with rotctl."""
+    return sorted(path.stem for path in (conf_dir() / "tune").glob("*.yaml"))
+
+
+def load_space(name: str) -> Space:
+    """Read a space: one of `names()`, or any file that ends in .yaml.
+
+    Raises:
+        InputError: one line that names the file, the bad value and what is valid.
+    """
+    if not name.endswith(".yaml") and name not in names():
+        raise InputError(
+            f"{name}: no such space; valid: {', '.join(names())}, or the path of a .yaml file"
+        )
+    path = Path(name) if name.endswith(".yaml") else conf_dir() / "tune" / f"{name}.yaml"
+    try:
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from None
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: is no YAML: {' '.join(str(error).split())}") from None
+    if not isinstance(data, dict):
+        raise InputError(f"{path}: must be keys with values: {', '.join(_fields(Space))}")
+    try:
+        return _ADAPTER.validate_python(data)
+    except ValidationError as error:
+        raise InputError(f"{path}: {_complaint(error.errors(include_url=False)[0])}") from None
+
+
+def _complaint(first: Any) -> str:
+    """One line on what pydantic found wrong."""
+    loc = [part for part in first["loc"] if isinstance(part, str | int)]
+    where = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in loc).lstrip(".")
+    if first["type"] == "unexpected_keyword_argument":
+        owner = _PARTS.get(loc[0], Space) if len(loc) > 1 else Space
+        return f"unknown key {where!r}; valid keys: {', '.join(_fields(owner))}"
+    if first["type"] == "missing":
+        return f"{where}: missing, it cannot be left out"
+    message = _WORDS.get(first["type"], "").format(**first.get("ctx", {}))
+    message = message or first["msg"].removeprefix("Value error, ")
+    message = re.sub(r"^Input should", "must", message)
+    value = first["input"]
+    if isinstance(value, str | int | float):
+        where += f"={value!r}"
+    return f"{where}: {message}" if where else message
+
+
+def _fields(owner: type) -> list[str]:
+    return list(owner.__dataclass_fields__)  # type: ignore[attr-defined]

@@ -1,0 +1,125 @@
+"""Numbers in and out of a config's plain data, by dotted key; what a space makes of a config."""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rotctl.config import Config, check, load, to_dict
+from rotctl.errors import InputError
+from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
+
+Values = dict[str, float]  # key -> value, in the order of the space
+BLOCK = 1_000_000  # training seeds of one search
+FINAL = 900_000  # of these, from here on, those that choose between the last candidates
+
+
+def path(key: str) -> tuple[str | int, ...]:
+    """`a.b[0]` to ("a", "b", 0)."""
+    return tuple(int(p) if p.isdecimal() else p for p in re.findall(r"[^.\[\]]+", key))
+
+
+def get(data: Any, key: str) -> float:
+    """The number at a key.
+
+    Raises:
+        InputError: there is none; the line names the valid keys there.
+    """
+    found = data
+    for depth, part in enumerate(path(key)):
+        try:
+            found = found[part]
+        except (KeyError, IndexError, TypeError):
+            where = ".".join(map(str, path(key)[:depth]))
+            valid = _members(found)
+            raise InputError(
+                f"parameter {key}: not in the config; valid under {where or 'it'}: {valid}"
+            ) from None
+    if isinstance(found, bool) or not isinstance(found, int | float):
+        raise InputError(f"parameter {key}: is {_members(found)}, no single number")
+    return float(found)
+
+
+def put(data: Any, values: Mapping[str, float]) -> Any:
+    """The same plain data with numbers changed; every key must be there."""
+    for key, value in values.items():
+        data = _replaced(data, path(key), value)
+    return data
+
+
+def start_values(space: Space, data: Any) -> Values:
+    """The numbers that the search starts from.
+
+    Raises:
+        InputError: a key is not in the config, a range is not allowed there, or the start is
+            outside its range.
+    """
+    found = {}
+    for parameter in space.parameters:
+        key, low, high = parameter.key, parameter.low, parameter.high
+        found[key] = get(data, key)
+        if not low <= found[key] <= high:
+            raise InputError(
+                f"parameter {key}: starts at {found[key]:g} {parameter.unit}, "
+                f"outside its range {low:g} to {high:g}"
+            )
+        for bound in (low, high):
+            check(put(data, {key: bound}))
+    return found
+
+
+def variations(space: Space, overrides: list[str]) -> list[Any]:
+    """The configs that candidates are put into, as plain data, one for each variation.
+
+    Args:
+        overrides: of the command line; they go over those of the space, and under its variations.
+
+    Raises:
+        InputError: an override is none, or chooses seeds.
+    """
+    try:
+        unseeded(overrides)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    below = [f"duration={space.runs.duration:.10g}", *space.base, *overrides]
+    return [to_dict(load([*below, *changes])) for changes in space.runs.variations]
+
+
+def configs(data: Sequence[Any], values: Mapping[str, float], seeds: Sequence[int]) -> list[Config]:
+    """The configs of a candidate's runs: one for each seed, the variations in turn.
+
+    Raises:
+        InputError: a seed is for judging, or the values make no config.
+    """
+    if min(seeds) < TRAINING_SEEDS:
+        raise InputError(f"seed={min(seeds)}: training seeds start at {TRAINING_SEEDS:,}")
+    filled = [put(variation, values) for variation in data[: len(seeds)]]
+    return [check({**filled[i % len(data)], "seed": seed}) for i, seed in enumerate(seeds)]
+
+
+def training_seeds(space: Space, seed: int, generation: int) -> range:
+    """Seeds of the runs of every candidate in a generation: fresh ones for each generation."""
+    first = space.runs.first_seed + seed * BLOCK + generation * space.runs.seeds
+    return range(first, first + space.runs.seeds)
+
+
+def final_seeds(space: Space, seed: int) -> range:
+    """Seeds that no generation has seen."""
+    first = space.runs.first_seed + seed * BLOCK + FINAL
+    return range(first, first + space.runs.final)
+
+
+def _replaced(data: Any, parts: tuple[str | int, ...], value: float) -> Any:
+    if not parts:
+        return value
+    head, rest = parts[0], parts[1:]
+    changed: Any = dict(data) if isinstance(data, dict) else list(data)
+    changed[head] = _replaced(data[head], rest, value)
+    return changed
+
+
+def _members(data: Any) -> str:
+    if isinstance(data, dict):
+        return ", ".join(data)
+    if isinstance(data, list | tuple):
+        return f"a list of {len(data)}"
+    return f"the value {data!r}"

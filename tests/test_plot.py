@@ -1,0 +1,184 @@
+"""The page of plots: its signals against independent sums, its formats, and the words of errors."""
+
+import re
+
+import numpy as np
+import pytest
+from logs import changed
+from PIL import Image
+
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError, LogError
+from rotctl.log import RunLog
+from rotctl.report import plot as module
+from rotctl.report import stored_model
+from rotctl.report.plot import plot
+from rotctl.report.signals import (
+    angular_rates,
+    joint_group,
+    linear_rates,
+    signals,
+    torque_fractions,
+)
+from rotctl.report.timeline import contact_bars
+from rotctl.run import LOG_NAME, run
+
+ALL = slice(None)
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    result = run(load(["seed=1", "duration=1"]), tmp_path_factory.mktemp("runs"))
+    return RunLog.open(result.folder / LOG_NAME)
+
+
+def words(path):
+    return re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text(encoding="utf-8"))
+
+
+# ---------------------------------------------------------------- signals
+
+
+def test_realised_rates_are_those_of_the_contact_forces_and_gravity(log):
+    model = stored_model.load(log)
+    weight = model.body_subtreemass[1] * model.opt.gravity
+    linear = linear_rates(log, ALL, weight).realised
+    angular = angular_rates(log, ALL).realised
+    quiet = [i for i in range(log.steps) if not (log["contacts/body"][i] >= 0).any()]
+    np.testing.assert_allclose(linear[quiet], np.broadcast_to(weight, (len(quiet), 3)))
+    np.testing.assert_array_equal(angular[quiet], 0.0)
+    row = int(np.argmax((log["contacts/body"] >= 0).sum(axis=1)))
+    forces = log["contacts/force_realised"][row].astype(float)
+    arms = log["contacts/position"][row].astype(float) - log["trajectory/com"][row]
+    np.testing.assert_allclose(linear[row], forces.sum(axis=0) + weight, rtol=1e-9)
+    moments = [np.cross(arm, force) for arm, force in zip(arms, forces, strict=True)]
+    np.testing.assert_allclose(angular[row], np.sum(moments, axis=0), rtol=1e-9)
+
+
+def test_units_are_turns_and_the_start_is_zero(log):
+    found = signals(log, ALL)
+    angle = log["trajectory/angular_excursion"]
+    np.testing.assert_allclose(2 * np.pi * found.turns[:, 1], angle[:, 1] - angle[0, 1])
+    np.testing.assert_allclose(2 * np.pi * found.spin, log["trajectory/angular_velocity"])
+    assert (found.commanded_spin, found.commanded_speed) == (1.3, 1.2)
+    assert (found.used <= found.count).all()
+
+
+@pytest.mark.parametrize("value", [None, "1.3", True, 10**400, [1.3]])
+def test_a_command_that_is_no_number_is_none(log, tmp_path, value):
+    outcome = {"angular_velocity_commanded": value}
+    assert np.isnan(signals(changed(log, tmp_path, outcome=outcome), ALL).commanded_spin)
+
+
+def test_joints_are_grouped_over_sides_and_axes(log):
+    assert [joint_group(name) for name in ("hip_y_l", "knee_r", "waist_z")] == [
+        "hip",
+        "knee",
+        "waist",
+    ]
+    groups = torque_fractions(log, ALL)
+    fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
+    assert max(each.max() for each in groups.values()) == fraction.max()
+    assert {"waist", "hip", "knee", "ankle"} <= set(groups)
+
+
+def test_bars_cover_exactly_the_rows_with_contact(log):
+    model = stored_model.load(log)
+    bars, time = contact_bars(log, ALL, model), log["trajectory/time"]
+    for name, of_part in bars.items():
+        touches = log["contacts/body"] == model.body(name).id
+        covered, used = np.zeros(len(time), bool), np.zeros(len(time), bool)
+        for bar in of_part:
+            inside = (time >= bar.start - 1e-6) & (time < bar.start + bar.duration - 1e-6)
+            covered |= inside
+            used |= inside & bar.used
+        np.testing.assert_array_equal(covered, touches.any(axis=1))
+        np.testing.assert_array_equal(used, (touches & log["contacts/used"]).any(axis=1))
+    assert bars
+
+
+# ---------------------------------------------------------------- the page
+
+
+def test_png_pdf_and_svg(log, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "DOTS", 80)
+    for ending, magic in ((".png", b"\x89PNG"), (".PDF", b"%PDF"), (".svg", b"<?xml")):
+        out = tmp_path / f"plot{ending}"
+        plot(log, out)
+        assert out.read_bytes().startswith(magic)
+    with Image.open(tmp_path / "plot.png") as image:
+        assert image.size == tuple(int(80 * side) for side in module.SIZE)
+        assert len(image.convert("RGB").getcolors(10**7)) > 50
+    said = words(tmp_path / "plot.svg")
+    assert {"realised", "predicted", "wanted", "rev/s", "N m", "used", "left out"} <= set(said)
+    assert {"Blend γ", "Torque as a fraction of its limit", "Contacts by body part"} <= set(said)
+
+
+def test_the_same_log_gives_the_same_bytes_and_a_window_shows_less(log, tmp_path):
+    first, second = tmp_path / "a.svg", tmp_path / "b.svg"
+    plot(log, first, start=0.2, end=0.6)
+    plot(log, second, start=0.2, end=0.6)
+    assert first.read_bytes() == second.read_bytes()
+    assert "0.8" not in words(first)
+
+
+def test_a_strangers_names_are_text(log, tmp_path):
+    evil = "<script>$\\frac{$</script>"
+    outcome = {"behaviour": evil, "success": False, "failure_reason": evil}
+    hostile = changed(log, tmp_path, outcome=outcome, run_id=evil)
+    plot(hostile, tmp_path / "plot.svg")
+    assert "<script" not in (tmp_path / "plot.svg").read_text(encoding="utf-8")
+    assert "&lt;script&gt;$\\frac{$&lt;/script&gt;" in words(tmp_path / "plot.svg")
+
+
+def test_a_run_that_broke_down_is_plotted_until_there(log, tmp_path):
+    states, rates = log["trajectory/qpos"].copy(), log["trajectory/angular_velocity"].copy()
+    states[20:], rates[10:20] = np.nan, np.inf
+    arrays = {"trajectory/qpos": states, "trajectory/angular_velocity": rates}
+    arrays["trajectory/linear_momentum_rate_desired"] = np.full_like(rates, np.nan)
+    broken = changed(log, tmp_path, arrays)
+    plot(broken, tmp_path / "plot.svg")
+    states[1:] = np.nan
+    plot(changed(log, tmp_path, {"trajectory/qpos": states}), tmp_path / "plot.svg")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "message"),
+    [
+        ("plot.jpg", {}, "{out}: cannot plot into that; valid endings: .png, .svg, .pdf"),
+        ("plot", {}, "{out}: cannot plot into that; valid endings: .png, .svg, .pdf"),
+        ("plot.png", {"start": -1.0}, "start is -1 s, valid: 0 to 0.983333 s"),
+        ("plot.png", {"end": 2.0}, "end is 2 s, valid: 0 to 0.983333 s"),
+        (
+            "plot.png",
+            {"start": 0.5, "end": 0.5},
+            "start is 0.5 s, valid: less than end = 0.5 s",
+        ),
+        ("nowhere/plot.svg", {}, "cannot write {out}: No such file or directory"),
+    ],
+)
+def test_bad_arguments_are_named(log, tmp_path, name, arguments, message):
+    out = tmp_path / name
+    with pytest.raises(InputError) as caught:
+        plot(log, out, **arguments)
+    assert str(caught.value) == message.format(out=out)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_model_that_names_files_is_refused(log, tmp_path):
+    hostile = log.model_xml.replace("<worldbody>", "<worldbody><include file='/etc/passwd'/>")
+    with pytest.raises(LogError) as caught:
+        plot(changed(log, tmp_path, model_xml=hostile), tmp_path / "plot.svg")
+    assert str(caught.value) == (
+        f"{tmp_path / 'changed.h5'}: model/mjcf has <include>, which a log's model may not have"
+    )
+
+
+def test_the_command_writes_beside_the_log(log, capsys):
+    assert main(["plot", str(log.path), "--from", "0.5"]) == 0
+    out = log.path.with_name("plot.png")
+    assert capsys.readouterr() == (f"{out}\n", "")
+    assert out.stat().st_size > 50_000
+    assert main(["plot", "nothing.h5"]) == 2
+    assert capsys.readouterr() == ("", "rotctl: nothing.h5: no such file\n")

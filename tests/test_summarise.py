@@ -1,0 +1,243 @@
+"""Summaries: every run a row, rates with honest intervals, nothing averaged in silence."""
+
+import csv
+import io
+import json
+import shutil
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.stats import norm
+
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.log import SCHEMA, RunLog, encode_run
+from rotctl.run import make, run
+from rotctl.sweep.found import found
+from rotctl.sweep.groups import grouped, markdown, wilson
+from rotctl.sweep.manifest import Entry, read, write
+from rotctl.sweep.table import Table, table
+
+ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=0.5"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A sweep to be looked at only."""
+    out = tmp_path_factory.mktemp("made")
+    assert main(["sweep", *ARGUMENTS, "--out", str(out), "--jobs", "1", "--quiet"]) == 0
+    return out
+
+
+@pytest.fixture
+def sweep(made, tmp_path):
+    """A copy of it, to be harmed."""
+    return shutil.copytree(made, tmp_path / "sweep")
+
+
+def change(log, outcome=None, **attributes):
+    """Write a log again with other attributes, or another outcome."""
+    whole = RunLog.open(log)
+    names = ("config", "run_id", "seed", "versions", "machine", "wall_time")
+    kept = {name: whole.attributes[name] for name in (*names, "git_commit", "git_dirty")}
+    kept["outcome"] = {**whole.outcome, **(outcome or {})}
+    arrays = {name: whole[name] for name in SCHEMA if name != "model/mjcf"}
+    log.write_bytes(encode_run(arrays, model_xml=whole.model_xml, attributes=kept | attributes))
+
+
+# ---------------------------------------------------------------- the interval
+
+
+@pytest.mark.parametrize(
+    ("succeeded", "n", "low", "high"),
+    [
+        # Newcombe (1998), table I, method 3, to the four digits it gives.
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0000, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+        # By the formula's symmetry.
+        (20, 20, 0.8389, 1.0000),
+    ],
+)
+def test_wilson_against_published_values(succeeded, n, low, high):
+    assert wilson(succeeded, n) == pytest.approx((low, high), abs=5e-5)
+
+
+def test_wilson_solves_the_score_equation():
+    z = norm.ppf(0.975)
+    for succeeded, n in [(1, 3), (45, 50), (99, 100)]:
+        for bound in wilson(succeeded, n):
+            score = (succeeded / n - bound) / np.sqrt(bound * (1 - bound) / n)
+            assert abs(score) == pytest.approx(z)
+
+
+def test_wilson_of_nothing_says_nothing():
+    assert wilson(0, 0) == (0.0, 1.0)
+
+
+# ---------------------------------------------------------------- the table
+
+
+def test_a_row_a_run_with_the_overridden_keys_as_columns(made):
+    found_ = table(made)
+    rows = found_.rows
+    assert found_.keys == ["behaviour", "config.duration", "seed"]
+    assert list(rows.columns[:5]) == ["run_id", "status", *found_.keys]
+    assert list(zip(rows["behaviour"], rows["seed"], strict=True)) == [
+        (name, seed) for name in ("forward_roll_1", "forward_roll_1_phase") for seed in range(3)
+    ]
+    assert set(rows["status"]) == {"done"}
+    assert set(rows["config.duration"]) == {0.5}
+    assert found_.notes == []
+    for _, row in rows.iterrows():
+        summary = json.loads((made / row["run_id"] / "summary.json").read_text())
+        assert row["revolutions"] == summary["revolutions"]
+        assert row["log"] == f"{row['run_id']}/run.h5"
+
+
+def test_the_command_prints_markdown_and_writes_csv(sweep, capsys):
+    assert main(["summarise", str(sweep)]) == 0
+    stdout, stderr = capsys.readouterr()
+    lines = stdout.splitlines()
+    assert stderr == ""
+    assert lines[0].startswith("| behaviour            | config.duration | n | success [95 %]  |")
+    assert set(lines[1]) == set("| -")
+    assert lines[2].startswith("| forward_roll_1       | 0.5             | 3 | 100 % [44, 100] |")
+    assert lines[-2:] == [str(sweep / "summary.csv"), str(sweep / "groups.csv")]
+    rows = list(csv.DictReader(io.StringIO((sweep / "summary.csv").read_text())))
+    assert len(rows) == 6
+    (first, _) = list(csv.DictReader(io.StringIO((sweep / "groups.csv").read_text())))
+    assert (first["n"], first["succeeded"], first["success_rate"]) == ("3", "3", "1.0")
+    before = (sweep / "summary.csv").read_bytes(), (sweep / "groups.csv").read_bytes()
+    assert main(["summarise", str(sweep)]) == 0
+    assert ((sweep / "summary.csv").read_bytes(), (sweep / "groups.csv").read_bytes()) == before
+
+
+def test_by_any_column_and_a_wrong_one_is_named(made, capsys):
+    found_ = table(made)
+    assert list(grouped(found_, ["seed"]).rows["n"]) == [2, 2, 2]
+    assert list(grouped(found_, []).rows["n"]) == [6]
+    with pytest.raises(InputError, match=r"^--by: no column 'sed'; valid: run_id, status, beh"):
+        grouped(found_, ["sed"])
+
+
+def test_quartiles_are_those_of_the_runs(made):
+    found_ = table(made)
+    (row,) = grouped(found_, []).rows.to_dict("records")
+    values = found_.rows["revolutions"]
+    assert row["revolutions_q25"] == np.percentile(values, 25)
+    assert row["revolutions_median"] == np.median(values)
+    assert row["revolutions_q75"] == np.percentile(values, 75)
+
+
+def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep):
+    logs = sorted(sweep.glob("*/run.h5"))
+    change(logs[0], {"success": False, "failure_reason": "stalled"})
+    entries = read(sweep)
+    for log, reason in zip(logs[1:3], ("its worker died", ""), strict=True):
+        name = log.parent.name
+        entries[name] = Entry(name, entries[name].values, reason)
+        log.unlink()
+    write(sweep, entries.values())
+    found_ = table(sweep)
+    assert sorted(found_.rows["status"]) == ["done"] * 4 + ["failed to run", "not run"]
+    assert len(found_.rows) == 6
+    assert found_.notes == [
+        f"{logs[1].parent.name}: failed to run: its worker died",
+        "1 run of the sweep is not there; the same command does what is left",
+    ]
+    groups = grouped(found_, [])
+    (row,) = groups.rows.to_dict("records")
+    assert (row["n"], row["succeeded"], row["no_result"]) == (4, 3, 2)
+    assert "| 4 | 2         | 75 % [30, 95]  |" in markdown(groups)
+
+
+def test_a_damaged_log_is_a_row_and_leftovers_are_not(sweep):
+    (log, *others) = sorted(sweep.glob("*/run.h5"))
+    log.write_bytes(log.read_bytes()[:1000])
+    others[0].with_name("run.h5.part").touch()
+    others[0].with_name("run.h5.corrupt").touch()
+    (sweep / "notes.txt").write_text("not ours")
+    found_ = table(sweep)
+    assert len(found_.rows) == 6
+    (row,) = found_.rows[found_.rows["status"] == "damaged"].to_dict("records")
+    assert row["run_id"] == log.parent.name
+    assert found_.notes == [f"{log.parent.name}: damaged: truncated or damaged HDF5 file"]
+    assert row["behaviour"] in ("forward_roll_1", "forward_roll_1_phase")
+
+
+def test_runs_below_deeper_folders_count_once(made, tmp_path):
+    for name in ("one", "two"):
+        shutil.copytree(made, tmp_path / name)
+    runs, copies = found(tmp_path)
+    assert len(runs) == 6
+    assert len(copies) == 6
+    assert copies[0].endswith("again, counted once")
+
+
+def test_without_a_sweep_the_keys_are_those_that_differ(tmp_path):
+    for overrides in (["seed=1"], ["seed=2", "controller.gains.pose_damping=39"]):
+        run(load(["duration=0.5", *overrides]), tmp_path)
+    found_ = table(tmp_path)
+    assert found_.keys == ["behaviour", "controller.gains.pose_damping", "seed"]
+    assert sorted(found_.rows["seed"]) == [1, 2]
+    assert len(grouped(found_).rows) == 2
+
+
+def test_a_foreign_run_in_a_sweep_is_not_pooled_with_what_it_differs_from(sweep):
+    run(load(["duration=0.5", "controller.gains.pose_damping=39"]), sweep)
+    groups = grouped(table(sweep))
+    assert "controller.gains.pose_damping" in groups.keys
+    assert sorted(groups.rows["n"]) == [1, 3, 3]
+
+
+def test_other_code_is_kept_apart_or_said(sweep, capsys):
+    log = sorted(sweep.glob("*/run.h5"))[0]
+    change(log, git_commit="0123456789", git_dirty=False)
+    found_ = table(sweep)
+    apart = grouped(found_, [])
+    assert apart.keys == ["code"]
+    assert sorted(apart.rows["n"]) == [1, 5]
+    assert apart.notes[0].startswith(
+        "made by 2 versions of the code, kept apart; --mixed averages over them: rotctl "
+    )
+    together = grouped(found_, [], mixed=True)
+    assert list(together.rows["n"]) == [6]
+    assert together.notes[0].startswith("made by 2 versions of the code, averaged all the same: ")
+    main(["summarise", str(sweep), "--by", "behaviour"])
+    assert "made by 2 versions of the code, kept apart" in capsys.readouterr().err
+
+
+def test_a_log_that_lies_about_its_outcome_is_damaged(sweep):
+    log = sorted(sweep.glob("*/run.h5"))[0]
+    change(log, versions={"python": "3"})
+    assert table(sweep).notes == [
+        f"{log.parent.name}: damaged: versions are not those of a rotctl log"
+    ]
+
+
+@pytest.mark.parametrize("inside", [None, "empty"])
+def test_no_runs_is_one_line(tmp_path, capsys, inside):
+    folder = tmp_path / "out"
+    message = f"rotctl: {folder}: no such folder\n"
+    if inside:
+        folder.mkdir()
+        message = f"rotctl: {folder}: no runs in it; rotctl sweep --out {folder} makes some\n"
+    assert main(["summarise", str(folder)]) == 2
+    assert capsys.readouterr().err == message
+
+
+def test_text_from_logs_cannot_break_the_table():
+    rows = pd.DataFrame([{"status": "done", "success": True, "code": "c", "x": "a|b\nc", "m": 1.0}])
+    text = markdown(grouped(Table(rows, ["x"], ["m"], []), ["x"]))
+    assert text.splitlines()[2].startswith("| a\\|b c | 1 |")
+
+
+def test_the_summary_of_a_run_in_memory_is_the_one_in_its_log(tmp_path):
+    made = make(load(["duration=0.5"]))
+    path = tmp_path / "run.h5"
+    path.write_bytes(made.log)
+    assert RunLog.open(path).outcome == made.summary

@@ -1,0 +1,280 @@
+"""The sweep command: what it does, reuses, sets aside and says."""
+
+import json
+import os
+from pathlib import Path
+
+import h5py
+import pytest
+from sweep_cli import finish, logs, published
+
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.log import SCHEMA, RunLog, collect, encode_run
+from rotctl.run import make, publish
+from rotctl.sweep.code import code_version
+from rotctl.sweep.engines import Failure
+from rotctl.sweep.launch import launch, tally
+from rotctl.sweep.lock import locked
+from rotctl.sweep.manifest import read
+from rotctl.sweep.plan import plan, planned
+from rotctl.sweep.points import points
+
+BRIEF = "duration=0.5"
+
+
+@pytest.fixture
+def cli(capsys):
+    def call(*arguments):
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as stop:
+            code = stop.code
+        return (code, *capsys.readouterr())
+
+    return call
+
+
+class Here:
+    """An engine without processes; `fails` has reasons by index."""
+
+    where, workers = "this process", 1
+
+    def __init__(self, fails=None):
+        self.fails = fails or {}
+        self.asked = 0
+
+    def map(self, task, items, retries):
+        for index, item in enumerate(items):
+            self.asked += 1
+            reason = self.fails.get(index)
+            yield index, Failure(reason) if reason else task(item)
+
+    def close(self):
+        pass
+
+
+def runs_of(*grid):
+    return planned(points([[BRIEF, *grid]]))
+
+
+def sweep(out, *grid, fails=None, strict=False):
+    out.mkdir(exist_ok=True)
+    runs, engine = runs_of(*grid), Here(fails)
+    there = plan(runs, out, strict)
+    return launch(there, runs, out, engine, 0), there, engine
+
+
+# ---------------------------------------------------------------- the command
+
+
+def test_a_sweep_and_the_same_again(tmp_path):
+    out = tmp_path / "my sweep"
+    arguments = ["sweep", BRIEF, "seed=range(0,3)", "--out", out, "--jobs", "2"]
+    code, stdout, stderr = finish(*arguments)
+    assert (code, stderr) == (0, f"3 runs to do in {out}; on 2 local processes\n")
+    assert stdout == (
+        f"3 runs: 3 succeeded, 0 did not, 0 failed to run\nnext       rotctl summarise '{out}'\n"
+    )
+    for log in logs(out):
+        RunLog.open(log).verify()
+        row = json.loads(log.with_name("summary.json").read_text())
+        assert row["run_id"] == log.parent.name
+    before = published(out)
+    code, stdout, stderr = finish(*arguments)
+    assert (code, stderr) == (
+        0,
+        f"0 runs to do in {out}, 3 are there already; on 2 local processes\n",
+    )
+    assert stdout.startswith(
+        "3 runs: 3 succeeded, 0 did not, 0 failed to run, 3 of them were there"
+    )
+    assert published(out) == before
+
+
+def test_a_run_of_the_sweep_is_the_run_of_run(cli, tmp_path):
+    cli("run", BRIEF, "seed=1", "--out", tmp_path / "run", "--quiet")
+    sweep(tmp_path / "sweep", "seed=1")
+    (one,), (other,) = logs(tmp_path / "run"), logs(tmp_path / "sweep")
+    assert one.parent.name == other.parent.name
+    for name in ("trajectory/qpos", "trajectory/ctrl", "contacts/force_realised"):
+        assert RunLog.open(one)[name].tobytes() == RunLog.open(other)[name].tobytes()
+
+
+def test_dry_run_writes_nothing(cli, tmp_path):
+    out = tmp_path / "out"
+    code, stdout, stderr = cli("sweep", BRIEF, "seed=range(0,8)", "--out", out, "--dry-run")
+    lines = stdout.splitlines()
+    assert (code, stderr) == (0, "")
+    assert lines[0] == f"8 runs, 8 of them not yet in {out}"
+    assert lines[1].endswith("  behaviour=forward_roll_1 seed=0 duration=0.5")
+    assert lines[6] == "  ... and 3 more"
+    assert lines[7].startswith("about ")
+    assert not out.exists()
+
+
+def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
+    out = tmp_path / "out"
+    for arguments, message in [
+        (["seed=1,-2"], "seed=-2: must be greater than or equal to 0"),
+        (["seed=1", "--retries", "-1"], "--retries=-1: must be at least 0"),
+        (["seed=1", "--jobs", "0"], "--jobs=0: must be at least 1"),
+        (["+experiment=no"], "+experiment=no: no such experiment; valid: forward_roll_1"),
+    ]:
+        code, stdout, stderr = cli("sweep", *arguments, "--out", out)
+        assert (code, stdout) == (2, "")
+        assert stderr.startswith(f"rotctl: {message}")
+        assert stderr.count("\n") == 1
+        assert not out.exists()
+
+
+def test_a_file_in_the_way_of_the_folder(cli, tmp_path):
+    (tmp_path / "file").touch()
+    code, _, stderr = cli("sweep", BRIEF, "--out", tmp_path / "file")
+    assert (code, stderr) == (2, f"rotctl: cannot write {tmp_path / 'file'}: File exists\n")
+
+
+def test_a_second_sweep_is_refused_while_the_first_lives(cli, tmp_path):
+    with locked(tmp_path):
+        code, stdout, stderr = cli("sweep", BRIEF, "--out", tmp_path)
+        assert (code, stdout) == (2, "")
+        assert stderr == (
+            f"rotctl: {tmp_path}: another sweep is at work there; wait for it, or choose another "
+            "--out\n"
+        )
+    with locked(tmp_path):  # free again
+        pass
+
+
+# ---------------------------------------------------------------- reuse
+
+
+def test_overlapping_sweeps_share_their_runs(tmp_path):
+    sweep(tmp_path, "seed=range(0,4)")
+    now, there, engine = sweep(tmp_path, "seed=range(2,6)")
+    assert (now.count, len(there.done), engine.asked) == (4, 2, 2)
+    assert len(logs(tmp_path)) == len(read(tmp_path)) == 6
+
+
+def test_points_with_one_config_are_one_run(tmp_path):
+    assert len(runs_of("seed=1,1,2")) == 2
+    assert len(runs_of("duration=0.5,0.50,1")) == 2
+
+
+def test_a_finished_run_without_its_summary_gets_it_back(tmp_path):
+    sweep(tmp_path, "seed=1")
+    (summary,) = tmp_path.glob("*/summary.json")
+    before = summary.read_text()
+    summary.unlink()
+    assert sweep(tmp_path, "seed=1")[2].asked == 0
+    assert summary.read_text() == before
+
+
+@pytest.mark.parametrize("harm", ["truncated", "flipped", "empty"])
+def test_a_damaged_log_is_set_aside_and_done_again(tmp_path, harm):
+    sweep(tmp_path, "seed=1,2")
+    victim = logs(tmp_path)[0]
+    content = bytearray(victim.read_bytes())
+    if harm == "flipped":
+        with h5py.File(victim) as file:
+            chunk = file["trajectory/qpos"].id.get_chunk_info(0)
+        content[chunk.byte_offset + chunk.size // 2] ^= 0x10
+    damaged = bytes(content if harm == "flipped" else content[: len(content) // 2])
+    victim.write_bytes(b"" if harm == "empty" else damaged)
+    _, there, engine = sweep(tmp_path, "seed=1,2")
+    assert engine.asked == 1
+    (reason,) = there.replaced
+    assert reason.startswith(f"{victim}: ")
+    assert reason.endswith("; kept as run.h5.corrupt")
+    assert Path(f"{victim}.corrupt").exists()
+    RunLog.open(victim).verify()
+
+
+def other_code(log):
+    """The same run, as if an older commit had made it."""
+    whole = RunLog.open(log)
+    names = ("config", "run_id", "seed", "wall_time", "outcome", "versions", "machine")
+    kept = {name: whole.attributes[name] for name in names}
+    kept |= {"git_commit": "0123456789", "git_dirty": False}
+    arrays = {name: whole[name] for name in SCHEMA}
+    mjcf = whole.model_xml
+    del arrays["model/mjcf"]
+    log.write_bytes(encode_run(arrays, model_xml=mjcf, attributes=kept))
+
+
+def test_other_code_is_reported_and_redone_only_if_strict(tmp_path):
+    sweep(tmp_path, "seed=1,2")
+    log = logs(tmp_path)[0]
+    other_code(log)
+    _, there, engine = sweep(tmp_path, "seed=1,2")
+    assert engine.asked == 0
+    ((code, count),) = there.other_code.items()
+    assert ("(0123456), mujoco" in code, count) == (True, 1)
+    _, there, engine = sweep(tmp_path, "seed=1,2", strict=True)
+    assert engine.asked == 1
+    assert there.replaced == [f"{log}: made by {code}"]
+    assert code_version(RunLog.open(log).attributes) == code_version(collect())
+
+
+# ---------------------------------------------------------------- failures
+
+
+def test_a_failed_run_is_a_row_until_it_is_done(tmp_path):
+    now, _, _ = sweep(tmp_path, "seed=1,2,3", fails={1: "no luck"})
+    failed = runs_of("seed=2")[0].run_id
+    assert now.broken == {failed: "no luck"}
+    assert {e.run_id: e.failure for e in read(tmp_path).values() if e.failure} == now.broken
+    assert len(logs(tmp_path)) == 2
+    now, _, engine = sweep(tmp_path, "seed=1,2,3")
+    assert (now.broken, engine.asked) == ({}, 1)
+    assert not any(entry.failure for entry in read(tmp_path).values())
+
+
+def test_a_breakdown_of_the_physics_fails_each_time_it_is_asked_for(cli, tmp_path):
+    arguments = ["sweep", "duration=1", "start.speed_x=[1e12,1e12],[1,2]", "--out", tmp_path]
+    for _ in range(2):
+        code, stdout, stderr = cli(*arguments, "--jobs", "1", "--quiet")
+        assert (code, stdout) == (1, "")
+        assert stderr.startswith("1 run failed to run:\n")
+        assert "start.speed_x=[1000000000000.0, 1000000000000.0]: physics broke down" in stderr
+
+
+def test_a_roll_that_stalls_is_a_result():
+    fallen = {"failure_reason": "stalled", "solver_failures": 0, "success": False}
+    now = tally([("a", fallen), ("b", {**fallen, "success": True})])
+    assert (now.succeeded, now.fell, now.broken) == (1, 1, {})
+
+
+def test_a_full_disk_is_one_line_and_what_was_done_stays(tmp_path, monkeypatch):
+    count = 0
+
+    def full(made, folder):
+        nonlocal count
+        count += 1
+        if count == 2:
+            raise InputError(f"cannot write {folder}: No space left on device")
+        publish(made, folder)
+
+    monkeypatch.setattr("rotctl.sweep.launch.publish", full)
+    with pytest.raises(InputError, match="No space left on device"):
+        sweep(tmp_path, "seed=1,2,3")
+    assert len(logs(tmp_path)) == 1
+    assert len(read(tmp_path)) == 3
+
+
+def test_a_manifest_of_somebody_else_is_refused(cli, tmp_path):
+    (tmp_path / "sweep.jsonl").write_text('{"run_id": "x"}\n')
+    code, _, stderr = cli("sweep", BRIEF, "--out", tmp_path, "--quiet")
+    assert (code, stderr) == (
+        2,
+        f"rotctl: {tmp_path / 'sweep.jsonl'}: line 1 is not a row of a sweep\n",
+    )
+
+
+def test_make_gives_the_bytes_and_writes_nothing(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = make(load([BRIEF]))
+    assert os.listdir() == []
+    publish(made, tmp_path / "run")
+    RunLog.open(tmp_path / "run" / "run.h5").verify()

@@ -1,0 +1,176 @@
+"""Dask: a scheduler and two workers, each a process of its own, on the loopback device."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+
+import pytest
+import sweep_tasks
+from sweep_cli import finish, kill, logs, published, start, until
+
+from rotctl.errors import InputError, RotctlError
+from rotctl.log import RunLog
+from rotctl.sweep.engines import Failure, make_engine
+
+pytest.importorskip("distributed", reason="Dask is not installed: pip install 'rotctl[cluster]'")
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+@contextmanager
+def process(log, *arguments, **environment):
+    """A Dask process that ends with the test."""
+    settings = {"PYTHONPATH": str(Path(__file__).parent), **environment}
+    with log.open("w") as output:
+        child = subprocess.Popen(
+            [sys.executable, "-m", *arguments],
+            stdout=output,
+            stderr=output,
+            env=os.environ | settings,
+            start_new_session=True,  # its nanny's child ends with it
+        )
+    try:
+        yield child
+    finally:
+        child.terminate()
+        try:
+            child.wait(20)
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGKILL)
+            child.wait()
+
+
+def scheduler(folder, port):
+    return process(
+        folder / "scheduler.log",
+        "distributed.cli.dask_scheduler",
+        *("--host", "127.0.0.1", "--port", str(port), "--no-dashboard"),
+        # One death is one death, so that --retries counts.
+        DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES="0",
+    )
+
+
+def worker(folder, address, name):
+    return process(
+        folder / f"{name}.log",
+        "distributed.cli.dask_worker",
+        address,
+        *("--host", "127.0.0.1", "--nthreads", "1", "--nworkers", "1", "--no-dashboard"),
+        *("--local-directory", str(folder / name)),
+    )
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """The address of a scheduler with two workers."""
+    folder, port = tmp_path_factory.mktemp("dask"), free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    with ExitStack() as stack:
+        stack.enter_context(scheduler(folder, port))
+        for name in ("first", "second"):
+            stack.enter_context(worker(folder, address, name))
+        with closing(make_engine(None, address)) as engine:
+            until(lambda: engine.workers == 2)
+        yield address
+
+
+@pytest.fixture
+def engine(cluster):
+    with closing(make_engine(None, cluster)) as engine:
+        until(lambda: engine.workers == 2)
+        yield engine
+
+
+def test_every_item_gives_its_result(engine, cluster):
+    assert engine.where == f"{cluster} with 2 workers so far"
+    results = dict(engine.map(sweep_tasks.square, range(20), retries=0))
+    assert results == {i: i * i for i in range(20)}
+
+
+def test_trouble_stays_with_its_task(engine, tmp_path):
+    items = ["a", "raise", "b"]
+    results = dict(engine.map(sweep_tasks.trouble, items, retries=0))
+    assert results == {0: ("a", "1"), 1: Failure("ValueError: two lines"), 2: ("b", "1")}
+
+
+def test_a_worker_that_died_is_replaced_and_its_task_retried(engine, tmp_path):
+    assert list(engine.map(sweep_tasks.die_once, [str(tmp_path / "marker")], retries=1)) == [
+        (0, "alive")
+    ]
+
+
+def test_a_task_that_always_kills_is_a_failure(engine):
+    results = list(engine.map(sweep_tasks.trouble, ["kill"], retries=0))
+    assert results == [(0, Failure("the workers that tried it died"))]
+
+
+def test_the_runs_are_the_same_as_in_local_processes(cluster, tmp_path):
+    grid = ["duration=1", "seed=range(0,3)"]
+    local, dask = tmp_path / "local", tmp_path / "dask"
+    assert finish("sweep", *grid, "--out", local, "--jobs", "1", "--quiet")[0] == 0
+    assert finish("sweep", *grid, "--out", dask, "--scheduler", cluster, "--quiet")[0] == 0
+    names = [log.parent.name for log in logs(local)]
+    assert names == [log.parent.name for log in logs(dask)]
+    for one, other in zip(logs(local), logs(dask), strict=True):
+        one, other = RunLog.open(one), RunLog.open(other)
+        for name in ("trajectory/qpos", "trajectory/qvel", "trajectory/ctrl"):
+            assert one[name].tobytes() == other[name].tobytes()
+
+
+@pytest.mark.slow
+def test_a_killed_driver_leaves_the_rest_to_the_same_command(cluster, tmp_path):
+    arguments = ["sweep", "duration=3", "seed=range(0,12)", "--out", tmp_path]
+    arguments += ["--scheduler", cluster, "--quiet"]
+    driver = start(*arguments)
+    until(lambda: len(logs(tmp_path)) >= 2)
+    kill(driver.pid)
+    driver.communicate()
+    before = published(tmp_path)
+    assert finish(*arguments)[0] == 0
+    after = published(tmp_path)
+    assert len(after) == 12
+    assert before.items() <= after.items()
+
+
+def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
+    monkeypatch.setattr("rotctl.sweep.cluster.PATIENCE", 1.0)
+    address = f"tcp://127.0.0.1:{free_port()}"
+    with pytest.raises(InputError) as error:
+        make_engine(None, address)
+    assert str(error.value).startswith(f"--scheduler={address}: no Dask scheduler there: ")
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_goes_away_is_said(tmp_path):
+    port = free_port()
+    address = f"tcp://127.0.0.1:{port}"
+    with (
+        scheduler(tmp_path, port) as child,
+        worker(tmp_path, address, "only"),
+        closing(make_engine(None, address)) as engine,
+    ):
+        results = engine.map(sweep_tasks.pid_after, [0.0, 60.0], retries=0)
+        next(results)
+        kill(child.pid)
+        with pytest.raises(RotctlError) as error:
+            next(results)
+    assert str(error.value) == (
+        f"{address}: the scheduler is gone; start it again and repeat the command"
+    )
+
+
+def test_without_dask_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError) as error:
+        make_engine(None, "tcp://127.0.0.1:1")
+    assert str(error.value) == (
+        "--scheduler needs Dask, which is not installed: pip install 'rotctl[cluster]'"
+    )

@@ -1,0 +1,96 @@
+"""The engines: every task gives one result, whatever happens to the worker that has it."""
+
+import os
+import time
+from contextlib import closing
+
+import pytest
+import sweep_tasks
+
+from rotctl.errors import InputError
+from rotctl.sweep.engines import Failure, make_engine
+
+
+@pytest.fixture(scope="module")
+def engine():
+    with closing(make_engine(2, None)) as engine:
+        yield engine
+
+
+def test_every_item_gives_its_result(engine):
+    results = dict(engine.map(sweep_tasks.square, range(50), retries=0))
+    assert results == {i: i * i for i in range(50)}
+
+
+def test_nothing_to_do(engine):
+    assert list(engine.map(sweep_tasks.square, [], retries=0)) == []
+
+
+def test_trouble_stays_with_its_task(engine):
+    items = ["a", "raise", "b", "exit", "c", "kill", "d", "unpicklable", "e"]
+    results = dict(engine.map(sweep_tasks.trouble, items, retries=1))
+    assert len(results) == len(items)
+    assert results[1] == Failure("ValueError: two lines")
+    assert results[3] == Failure("its worker died: exit code 7, the last of 2 times")
+    assert results[5] == Failure("its worker died: killed by SIGKILL, the last of 2 times")
+    assert "pickle" in results[7].reason
+    for i in (0, 2, 4, 6, 8):
+        assert results[i] == (items[i], "1")
+
+
+def test_a_death_without_retries(engine):
+    assert list(engine.map(sweep_tasks.trouble, ["exit"], retries=0)) == [
+        (0, Failure("its worker died: exit code 7"))
+    ]
+
+
+def test_a_worker_that_died_once_is_retried(engine, tmp_path):
+    results = list(engine.map(sweep_tasks.die_once, [str(tmp_path / "marker")], retries=1))
+    assert results == [(0, "alive")]
+
+
+def test_workers_are_kept_for_the_next_map(engine):
+    first = {pid for _, pid in engine.map(sweep_tasks.pid_after, [0.05] * 4, retries=0)}
+    second = {pid for _, pid in engine.map(sweep_tasks.pid_after, [0.05] * 4, retries=0)}
+    assert first == second
+    assert len(first) == 2
+    assert os.getpid() not in first
+
+
+def test_closing_the_results_drops_what_runs():
+    with closing(make_engine(2, None)) as engine:
+        begin = time.perf_counter()
+        with closing(engine.map(sweep_tasks.pid_after, [0.0, 60.0, 60.0], retries=0)) as results:
+            next(results)
+        assert list(engine.map(sweep_tasks.square, [3], retries=0)) == [(0, 9)]
+    assert time.perf_counter() - begin < 10
+
+
+def test_one_process_is_one_process():
+    with closing(make_engine(1, None)) as engine:
+        assert engine.where == "1 local process"
+        pids = {pid for _, pid in engine.map(sweep_tasks.pid_after, [0.0] * 3, retries=0)}
+    assert len(pids) == 1
+
+
+@pytest.mark.parametrize(
+    ("jobs", "scheduler", "message"),
+    [
+        (0, None, "--jobs=0: must be at least 1"),
+        (
+            2,
+            "tcp://127.0.0.1:1",
+            "--jobs=2: is for local processes; with --scheduler, start as many workers",
+        ),
+        (
+            None,
+            "localhost:8786",
+            "--scheduler=localhost:8786: must be tcp://HOST:PORT or tls://HOST:PORT, "
+            "such as tcp://127.0.0.1:8786",
+        ),
+    ],
+)
+def test_bad_choices_are_named(jobs, scheduler, message):
+    with pytest.raises(InputError) as error:
+        make_engine(jobs, scheduler)
+    assert str(error.value) == message

@@ -1,0 +1,113 @@
+"""Whatever is killed, the same command again does the rest: nothing lost, nothing done twice."""
+
+import os
+import random
+import signal
+import sys
+
+import pytest
+from sweep_cli import finish, kill, logs, published, start, until, workers
+
+from rotctl.log import RunLog
+from rotctl.sweep.manifest import read
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+
+SLOW = "duration=50"  # takes a second: there is time to interfere
+
+
+def grid(count, duration="duration=3"):
+    return [duration, f"seed=range(0,{count})"]
+
+
+def whole(out, count):
+    assert len(logs(out)) == count
+    for log in logs(out):
+        RunLog.open(log).verify()
+    assert not list(out.glob("**/*.part"))
+    assert not list(out.glob("**/*.corrupt"))
+    assert sorted(read(out)) == sorted(log.parent.name for log in logs(out))
+
+
+def progress(driver, out, count):
+    until(lambda: len(logs(out)) >= count or driver.poll() is not None)
+
+
+def torture(out, count, kills, chance):
+    """Kill the driver or a worker at random times, until all is done."""
+    arguments = ["sweep", *grid(count), "--out", out, "--jobs", "2", "--quiet"]
+    seen = {}
+    for turn in range(kills):
+        driver = start(*arguments)
+        target = min(len(logs(out)) + chance.randint(1, max(1, count // kills)), count - 1)
+        progress(driver, out, target)
+        if turn % 2:
+            for pid in workers(driver.pid)[:1]:
+                kill(pid)
+            progress(driver, out, target + 1)
+        kill(driver.pid)
+        driver.communicate()
+        now = published(out)
+        assert {name: now[name] for name in seen} == seen
+        seen = now
+    assert finish(*arguments)[0] == 0
+    now = published(out)
+    assert {name: now[name] for name in seen} == seen
+    whole(out, count)
+
+
+def test_killed_again_and_again(tmp_path):
+    torture(tmp_path, 10, 3, random.Random(0))
+
+
+@pytest.mark.slow
+def test_two_hundred_runs_killed_ten_times(tmp_path):
+    torture(tmp_path, 200, 10, random.Random(1))
+
+
+def test_a_killed_worker_is_replaced_and_its_run_retried(tmp_path):
+    driver = start("sweep", *grid(2, SLOW), "--out", tmp_path, "--jobs", "2", "--quiet")
+    (first, _) = until(lambda: len(workers(driver.pid)) == 2 and workers(driver.pid))
+    kill(first)
+    _, stderr = driver.communicate(timeout=120)
+    assert (driver.returncode, stderr) == (0, "")
+    whole(tmp_path, 2)
+
+
+def test_without_retries_it_is_a_failed_row_and_the_others_go_on(tmp_path):
+    arguments = ["sweep", *grid(3, SLOW), "--out", tmp_path, "--jobs", "1", "--quiet"]
+    driver = start(*arguments, "--retries", "0")
+    (only,) = until(lambda: workers(driver.pid))
+    kill(only)
+    _, stderr = driver.communicate(timeout=120)
+    assert driver.returncode == 1
+    (failed,) = [entry for entry in read(tmp_path).values() if entry.failure]
+    assert failed.failure == "its worker died: killed by SIGKILL"
+    assert stderr == (
+        "1 run failed to run:\n"
+        f"  {failed.run_id}  behaviour=forward_roll_1 seed=0 duration=50.0: {failed.failure}\n"
+    )
+    assert len(logs(tmp_path)) == 2
+    assert finish(*arguments)[0] == 0
+    whole(tmp_path, 3)
+    assert not any(entry.failure for entry in read(tmp_path).values())
+
+
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
+)
+def test_an_interrupt_leaves_a_sweep_that_can_go_on(tmp_path, number):
+    driver = start("sweep", *grid(40), "--out", tmp_path, "--jobs", "2")
+    until(lambda: len(logs(tmp_path)) >= 3)
+    children = workers(driver.pid)
+    os.kill(driver.pid, number)
+    _, stderr = driver.communicate(timeout=20)
+    assert driver.returncode == 130
+    assert "Traceback" not in stderr
+    assert stderr.splitlines()[-1] == ("rotctl: interrupted; the same command does what is left")
+    assert not [pid for pid in children if os.path.exists(f"/proc/{pid}")]
+    before = published(tmp_path)
+    assert 3 <= len(before) < 40
+    assert not list(tmp_path.glob("**/*.part"))
+    assert finish("sweep", *grid(6), "--out", tmp_path, "--quiet")[0] == 0
+    assert before.items() <= published(tmp_path).items()

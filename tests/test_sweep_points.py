@@ -1,0 +1,110 @@
+"""Hydra's sweep syntax: the same points, and the same configs, as Hydra would make."""
+
+import pytest
+
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.listing import choices
+from rotctl.sweep.points import points
+
+
+def overrides(*grid):
+    return [point.overrides for point in points([grid])]
+
+
+@pytest.mark.parametrize(
+    ("grid", "expected"),
+    [
+        ((), [()]),
+        (("seed=3",), [("seed=3",)]),
+        (("seed=1,2",), [("seed=1",), ("seed=2",)]),
+        (("seed=range(0,3)",), [("seed=0",), ("seed=1",), ("seed=2",)]),
+        (("seed=range(8,2,-3)",), [("seed=8",), ("seed=5",)]),
+        (("duration=range(1,2,0.5)",), [("duration=1.0",), ("duration=1.5",)]),
+        (("seed=choice(4,2)",), [("seed=4",), ("seed=2",)]),
+        (("seed=sort(3,1,2)",), [("seed=1",), ("seed=2",), ("seed=3",)]),
+        (
+            ("start=rest,tucked", "seed=1,2"),
+            [
+                ("start=rest", "seed=1"),
+                ("start=rest", "seed=2"),
+                ("start=tucked", "seed=1"),
+                ("start=tucked", "seed=2"),
+            ],
+        ),
+        (("start=glob(t*)",), [("start=tucked",)]),
+        (
+            ("start.speed_x=[0,1],[1,2]",),
+            [("start.speed_x=[0,1]",), ("start.speed_x=[1,2]",)],
+        ),
+    ],
+)
+def test_the_last_key_varies_fastest(grid, expected):
+    assert overrides(*grid) == expected
+
+
+def test_glob_is_over_the_choices_of_a_group():
+    found = overrides("behaviour=glob(*,exclude=*_phase)")
+    wanted = [name for name in choices("behaviour") if not name.endswith("_phase")]
+    assert found == [(f"behaviour={name}",) for name in wanted]
+
+
+def test_grids_follow_each_other():
+    found = [point.overrides for point in points([["seed=1,2"], ["start=rest"]])]
+    assert found == [("seed=1",), ("seed=2",), ("start=rest",)]
+
+
+@pytest.mark.parametrize(
+    "grid",
+    [
+        ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,2)", "duration=1,2.5"],
+        ["controller.weights.angular_momentum=2,4.5", "seed=1", "start=rest"],
+        ["seed=1,2", "seed=5"],  # the later one wins, as in Hydra
+        ["start.speed_x=[0,1],[1,2]", "terrain.name='a, b'"],
+        ["start.speed_x=[0,1],[1,2]", "start=rest,tucked"],
+        ["+start.speed_x=[0,1],[1,2]"],
+        ["behaviour.poses.a={knee: 1.0},{knee: 2.0}", "behaviour.poses.a.hip_y=0.5"],
+        ["~behaviour.description", "seed=1,2"],
+        ["++duration=1,2"],
+        ["physics.substeps=4,8", "controller.solver=boxqp,osqp", "controller.form=condensed"],
+    ],
+)
+def test_each_config_is_the_one_that_hydra_composes(grid):
+    found = list(points([grid]))
+    for point in (found[0], found[-1]):
+        assert point.config == load(list(point.overrides))
+
+
+def test_the_values_are_those_of_the_config():
+    (point,) = points([["behaviour=forward_roll_1", "duration=2", "start.speed_x=[0,1]"]])
+    assert point.values == {
+        "behaviour": "forward_roll_1",
+        "duration": 2.0,
+        "start.speed_x": (0.0, 1.0),
+    }
+
+
+@pytest.mark.parametrize(
+    ("grid", "message"),
+    [
+        (["seed=range(-1,2)"], "seed=-1: must be greater than or equal to 0"),
+        (["seed=1,x"], 'seed="x": must be a valid integer'),
+        (["sed=1,2"], "unknown key 'sed'; valid keys: "),
+        (["duration.x=1,2"], "unknown key 'duration.x'; valid keys under duration: none, it is "),
+        (["start=rest,ret"], 'start="ret": no such choice; valid: '),
+        (["start=glob(x*)"], "start=glob(x*): no choice matches; valid: "),
+        (["seed=glob(*)"], "seed=glob(*): no such group"),
+        (["seed=interval(0,1)"], "seed=interval(0,1): has no steps; write seed=range(start,stop"),
+        (["seed=range(3,3)"], "seed=range(3,3): has no values"),
+        (["seed=range(0,1000)", "duration=range(1,1000)"], "the sweep has 999000 points; at most"),
+        (["seed=range(0,1000000000)"], "the sweep has 100001 points; at most 100000, in several"),
+        (["hydra.run.dir=a,b"], "override 'hydra.run.dir=a,b': Hydra's own settings cannot be"),
+        (["seed"], "override 'seed' has no '='; write key=value, such as seed=3"),
+        (["seed=${x},2"], "override 'seed=${x},2': interpolations and _target_ are not honoured"),
+    ],
+)
+def test_what_is_wrong_is_said_before_anything_runs(grid, message):
+    with pytest.raises(InputError) as error:
+        list(points([grid]))
+    assert str(error.value).startswith(message)
+    assert "\n" not in str(error.value)

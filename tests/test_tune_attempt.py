@@ -1,0 +1,87 @@
+"""What a run is worth, and when it is cut."""
+
+from dataclasses import replace
+from math import cos, nan, pi, radians, sin
+from types import SimpleNamespace
+
+import pytest
+
+from rotctl.config import load
+from rotctl.tune.attempt import Attempt, attempt, hopeless
+from rotctl.tune.objective import LOST, Rolled, finished, overall, score
+from rotctl.tune.space import Objective, Stopping
+
+OBJECTIVE = Objective("mean", survival=0.6, progress=0.4, pace=0.65, drift=0.03, heading=0.001)
+PERFECT = Rolled(survived=10.0, wanted=10.0, revolutions=6.5, drift=0.0, heading=0.0)
+STOPPING = Stopping(stall_time=1.5, stall_progress=0.1, off_axis=70.0)
+
+
+@pytest.mark.parametrize(
+    ("run", "worth"),
+    [
+        (PERFECT, 1.0),
+        (replace(PERFECT, revolutions=60.0), 1.0),
+        (replace(PERFECT, revolutions=-2.0), 0.6),
+        (replace(PERFECT, survived=5.0, revolutions=3.25), 0.5),
+        (replace(PERFECT, drift=-1.0), 0.97),
+        (replace(PERFECT, heading=-30.0), 0.97),
+        (replace(PERFECT, survived=0.0, heading=nan), 0.0),
+        (LOST, 0.0),
+    ],
+)
+def test_the_score_of_a_run(run, worth):
+    assert score(run, OBJECTIVE) == pytest.approx(worth)
+
+
+def test_the_mean_or_the_worst_run_counts():
+    runs = [PERFECT, replace(PERFECT, survived=5.0, revolutions=3.25), PERFECT]
+    assert overall(runs, OBJECTIVE) == pytest.approx(2.5 / 3)
+    assert overall(runs, replace(OBJECTIVE, over_runs="worst")) == pytest.approx(0.5)
+    assert finished(runs) == pytest.approx(2 / 3)
+
+
+def cut_at(progress, commanded=1.3, tilt=lambda t: 0.0):
+    """The time [s] at which a run of this progress(t) [rev] and tilt(t) [deg] is cut, or None."""
+    stop = hopeless(STOPPING, commanded)
+    for i in range(600):
+        t, angle = i / 60, radians(tilt(i / 60))
+        state = SimpleNamespace(time=t, lateral_axis=(0.0, cos(angle), sin(angle)))
+        if stop(state, SimpleNamespace(angle=(0.0, 2 * pi * progress(t), 0.0))):
+            return t
+    return None
+
+
+def test_a_run_is_cut_after_so_long_without_progress():
+    assert cut_at(lambda t: 0.65 * t) is None
+    assert cut_at(lambda t: 0.0) == pytest.approx(1.5)
+    assert cut_at(lambda t: min(0.65 * t, 1.3)) == pytest.approx(2.0 + 1.5, abs=0.16)
+    assert cut_at(lambda t: 0.06 * t) == pytest.approx(1.5)
+    assert cut_at(lambda t: 0.07 * t) is None
+
+
+def test_progress_is_in_the_direction_commanded():
+    assert cut_at(lambda t: -0.65 * t) == pytest.approx(1.5)
+    assert cut_at(lambda t: -0.65 * t, commanded=-1.3) is None
+
+
+def test_a_run_that_left_its_axis_is_cut():
+    assert cut_at(lambda t: t, tilt=lambda t: 69.0) is None
+    assert cut_at(lambda t: t, tilt=lambda t: 35.0 * t) == pytest.approx(2.0, abs=0.02)
+
+
+def test_a_hopeless_run_takes_no_longer_than_it_must():
+    # Commanded not to turn and not to go, it rocks to a standstill.
+    still = ["behaviour.speed=0", "behaviour.angular_velocity=0.01", "start=rest", "duration=8"]
+    run = attempt(Attempt(load(still), STOPPING))
+    assert 1.5 <= run.survived < 4.0
+    assert run.wanted == 8.0
+    assert not run.to_the_end
+
+
+def test_a_good_run_is_not_cut_and_repeats_itself():
+    item = Attempt(load(["seed=1000000", "duration=3"]), STOPPING)
+    run = attempt(item)
+    assert run.to_the_end
+    assert run.survived == pytest.approx(3.0)
+    assert run.revolutions > 1.0
+    assert attempt(item) == run

@@ -1,0 +1,182 @@
+"""Space files: what they may say, and the one line for what they may not."""
+
+import copy
+
+import pytest
+import yaml
+
+from rotctl.config import load, to_dict
+from rotctl.errors import InputError
+from rotctl.listing import conf_dir
+from rotctl.tune.space import TRAINING_SEEDS, load_space, names
+from rotctl.tune.values import (
+    configs,
+    final_seeds,
+    get,
+    put,
+    start_values,
+    training_seeds,
+    variations,
+)
+
+GAINS = conf_dir() / "tune" / "rolling_gains.yaml"
+DRAWN = "tune draws the seeds of its runs itself, from 1,000,000 on; those below are for judging"
+
+
+@pytest.fixture
+def complaint(tmp_path):
+    """Changes a good space file, and returns what is said of it."""
+
+    def say(change):
+        data = copy.deepcopy(yaml.safe_load(GAINS.read_text()))
+        change(data)
+        path = tmp_path / "x.yaml"
+        path.write_text(yaml.safe_dump(data))
+        with pytest.raises(InputError) as caught:
+            load_space(str(path))
+        assert caught.value.exit_code == 2
+        return str(caught.value).removeprefix(f"{path}: ")
+
+    return say
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
+    space = load_space(name)
+    assert space.name == name
+    assert list(start_values(space, variations(space, [])[0])) == [p.key for p in space.parameters]
+    assert all(parameter.unit for parameter in space.parameters)
+
+
+@pytest.mark.parametrize(
+    ("where", "value", "said"),
+    [
+        (
+            ["foo"],
+            1,
+            "unknown key 'foo'; valid keys: name, title, base, parameters, runs, objective, "
+            "stopping, sampler, trials, description",
+        ),
+        (
+            ["parameters", 1, "hi"],
+            1,
+            "unknown key 'parameters[1].hi'; valid keys: key, low, high, unit, scale, reason",
+        ),
+        (["parameters", 1, "high"], 100.0, "parameters[1]: low=200 must be below high=100"),
+        (["parameters", 1, "low"], -1.0, "parameters[1]: low=-1 must be above 0 on a log scale"),
+        (["parameters", 1, "low"], "1", "parameters[1].low='1': must be a valid number"),
+        (["parameters", 1, "scale"], "x", "parameters[1].scale='x': must be 'linear' or 'log'"),
+        (
+            ["parameters", 1, "key"],
+            "seed",
+            "parameters[1]: key must be dotted names, as in controller.gains.linear_damping[0]",
+        ),
+        (
+            ["parameters", 0, "key"],
+            "controller.weights.pose",
+            "parameters name controller.weights.pose twice",
+        ),
+        (["parameters"], [], "parameters: too few, at least 2"),
+        (["runs"], None, "runs: must be keys with values"),
+        (
+            ["runs", "first_seed"],
+            999_999,
+            "runs.first_seed=999999: training seeds start at 1,000,000; "
+            "those below are for judging",
+        ),
+        (["runs", "variations"], [["seed=3"]], f"runs.variations[0]: seed=3: {DRAWN}"),
+        (["base"], ["+seed={x}"], f"base: +seed={{x}}: {DRAWN}"),
+        (["sampler", "name"], "random", "sampler.name='random': must be 'cmaes' or 'tpe'"),
+        (["name"], "a b", "name='a b': must be letters, digits and _, a letter first"),
+    ],
+)
+def test_one_line_for_a_bad_value(complaint, where, value, said):
+    def change(data):
+        *owners, last = where
+        for owner in owners:
+            data = data[owner]
+        data[last] = value
+
+    assert complaint(change) == said
+
+
+def test_one_line_for_what_is_missing_or_no_space(complaint, tmp_path):
+    assert complaint(lambda data: data.pop("runs")) == "runs: missing, it cannot be left out"
+    with pytest.raises(InputError, match="^nope: no such space; valid: forward_roll_1, rolling_ga"):
+        load_space("nope")
+    with pytest.raises(InputError, match="none.yaml: No such file or directory$"):
+        load_space(str(tmp_path / "none.yaml"))
+    (tmp_path / "torn.yaml").write_text("a: [")
+    with pytest.raises(InputError, match="torn.yaml: is no YAML: while parsing"):
+        load_space(str(tmp_path / "torn.yaml"))
+
+
+def test_numbers_go_in_and_out_by_key_and_the_rest_stays():
+    data = to_dict(load([]))
+    assert get(data, "controller.gains.linear_damping[0]") == 3.62
+    changed = put(data, {"controller.gains.linear_damping[0]": 5.0, "behaviour.speed": 2.0})
+    assert list(changed["controller"]["gains"]["linear_damping"]) == [5.0, 8.59, 7.8]
+    assert changed["behaviour"]["speed"] == 2.0
+    assert data == to_dict(load([]))
+    assert (
+        put(changed, {key: get(data, key) for key in ("behaviour.speed",)})["start"]
+        == (data["start"])
+    )
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("controller.weights.poses", "not in the config; valid under controller.weights: linear_"),
+        ("controller.gains.linear_damping[3]", "not in the config; valid under controller.gains.l"),
+        ("controller.gains.linear_damping", "is a list of 3, no single number"),
+        ("controller.solver", "is the value 'boxqp', no single number"),
+    ],
+)
+def test_a_key_that_is_no_number_is_refused(key, said):
+    with pytest.raises(InputError) as caught:
+        get(to_dict(load([])), key)
+    assert str(caught.value).startswith(f"parameter {key}: {said}")
+
+
+def test_a_start_outside_its_range_and_a_range_outside_the_config_are_refused(tmp_path):
+    text = GAINS.read_text()
+    path = tmp_path / "x.yaml"
+    path.write_text(text.replace("low: 200.0", "low: 1000.0"))
+    space = load_space(str(path))
+    with pytest.raises(InputError, match="starts at 900 1/s2, outside its range 1000 to 2000$"):
+        start_values(space, variations(space, [])[0])
+    path.write_text(text.replace("low: 0.5, high: 20.0, scale: log", "low: -0.5, high: 20.0"))
+    space = load_space(str(path))
+    with pytest.raises(InputError, match="^controller.weights.angular_momentum=-0.5: must be"):
+        start_values(space, variations(space, [])[0])
+
+
+def test_no_override_and_no_seed_below_a_million_gets_through():
+    space = load_space("rolling_gains")
+    with pytest.raises(InputError, match=f"^seed=7: {DRAWN}$"):
+        variations(space, ["seed=7"])
+    data = variations(space, [])
+    with pytest.raises(InputError, match="^seed=999999: training seeds start at 1,000,000$"):
+        configs(data, {}, [TRAINING_SEEDS, TRAINING_SEEDS - 1])
+
+
+def test_every_generation_and_every_search_has_seeds_of_its_own():
+    space = load_space("rolling_gains")
+    blocks = [training_seeds(space, seed, g) for seed in (0, 1) for g in (0, 1, 2)]
+    blocks += [final_seeds(space, seed) for seed in (0, 1)]
+    seeds = [seed for block in blocks for seed in block]
+    assert len(set(seeds)) == len(seeds)
+    assert min(seeds) == TRAINING_SEEDS
+
+
+def test_runs_go_through_the_variations_again_and_again():
+    space = load_space("forward_roll_1")
+    data = variations(space, ["controller.friction=0.7"])
+    made = configs(data, {"behaviour.speed": 1.5}, range(TRAINING_SEEDS, TRAINING_SEEDS + 10))
+    assert [c.physics.substeps for c in made] == [4, 2, 4, 4, 1] * 2
+    assert [c.terrain.friction for c in made] == [1.0, 1.0, 0.8, 1.0, 1.0] * 2
+    assert [c.seed for c in made] == list(range(TRAINING_SEEDS, TRAINING_SEEDS + 10))
+    assert {(c.controller.friction, c.behaviour.speed, c.duration) for c in made} == {
+        (0.7, 1.5, 10.0)
+    }
