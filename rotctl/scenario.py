@@ -16,6 +16,8 @@ from rotctl.simulation import start as starts
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
 
+TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it
+
 
 @dataclass(frozen=True)
 class Scenario:
@@ -41,7 +43,8 @@ def build(config: Config) -> Scenario:
         InputError: parts that do not fit together, with one clear line.
     """
     control = config.controller
-    model = models.build(config.character, config.terrain, config.physics, control.rate)
+    ground = np.random.default_rng([config.seed, TERRAIN_STREAM])
+    model = models.build(config.character, config.terrain, config.physics, control.rate, ground)
     return Scenario(
         config=config,
         model=model,

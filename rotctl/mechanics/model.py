@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character, add_character
-from rotctl.mechanics.terrain import Terrain, add_terrain
+from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
 
@@ -93,14 +93,21 @@ class Model:
     trunk: NDArray[np.int64]
     trunk_weights: Array
     excluded: NDArray[np.bool_]
-    terrain: Terrain
+    ground: Ground
 
 
-def build(character: Character, terrain: Terrain, physics: Physics, control_rate: float) -> Model:
+def build(
+    character: Character,
+    terrain: Terrain,
+    physics: Physics,
+    control_rate: float,
+    generator: np.random.Generator | None = None,
+) -> Model:
     """Compile a model.
 
     Args:
         control_rate: [Hz]; the physics step is 1 / (control_rate * substeps).
+        generator: draws a random terrain; seed 0 if absent.
 
     Raises:
         InputError: the numbers do not make a model, or the model is not as tall as it says.
@@ -111,7 +118,9 @@ def build(character: Character, terrain: Terrain, physics: Physics, control_rate
     _set_options(spec, physics, control_rate)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    add_terrain(spec, terrain)
+    ground = terrain.make(np.random.default_rng(0) if generator is None else generator)
+    add_tiles(spec)
+    ground.add(spec)
     try:
         add_character(spec, character)
         mj = spec.compile()
@@ -137,7 +146,7 @@ def build(character: Character, terrain: Terrain, physics: Physics, control_rate
         trunk=trunk,
         trunk_weights=(mj.body_mass[trunk] / mj.body_mass[trunk].sum())[:, None],
         excluded=excluded,
-        terrain=terrain,
+        ground=ground,
     )
 
 
