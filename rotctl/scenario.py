@@ -70,7 +70,9 @@ def model_of(config: Config) -> Model:
     Raises:
         InputError: the numbers do not make a model.
     """
-    return _model(config.character, config.terrain, config.physics, config.controller.rate)
+    terrain = config.terrain
+    seed = config.seed if terrain.seeded else 0
+    return _model(config.character, terrain, config.physics, config.controller.rate, seed)
 
 
 def run_id(config: Config, model: Model) -> str:

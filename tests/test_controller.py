@@ -44,7 +44,9 @@ class Poisoned(Broken):
 def with_solvers(world, monkeypatch):
     """A controller whose solvers of these names are replaced."""
 
-    def make(strength=1.0, **solvers):
+    def make(strength=1.0, last=None, **solvers):
+        if last is not None:
+            monkeypatch.setattr(controller, "ActiveSet", lambda: last)
         model = replace(world.model, torque_limit=strength * world.model.torque_limit)
         found = {**solvers}
         monkeypatch.setattr(
@@ -275,14 +277,15 @@ def test_a_failure_in_the_second_pass_falls_back_too(world, supported, with_solv
 
 @pytest.mark.parametrize("kind", [Broken, Poisoned])
 def test_when_all_fail_the_pose_is_tracked(world, supported, with_solvers, kind):
-    chosen = with_solvers(0.2, osqp=kind("osqp"), boxqp=kind("boxqp", "bounds"))
+    last = kind("active_set", "bounds")
+    chosen = with_solvers(0.2, last, osqp=kind("osqp"), boxqp=kind("boxqp", "bounds"))
     limit, clipped = 0.2 * world.model.torque_limit, 0
     for step in supported[::10]:
         decision = decide(world, chosen, step)
         a, b = pose_torques(world, step)
         expected = step.blend * a + (1 - step.blend) * b
-        assert (decision.status, decision.fallback) == (2, 2)
-        assert len(decision.reasons) == 2
+        assert (decision.status, decision.fallback) == (2, 3)
+        assert len(decision.reasons) == 3
         assert decision.torque == pytest.approx(np.clip(expected, -limit, limit), abs=1e-9)
         assert decision.blend == step.blend
         assert not decision.used.any()
@@ -293,10 +296,14 @@ def test_when_all_fail_the_pose_is_tracked(world, supported, with_solvers, kind)
     assert clipped > 0
 
 
-def test_boxqp_alone_fails_to_the_pose(world, supported, with_solvers):
-    decision = decide(world, with_solvers(boxqp=Broken("boxqp", "bounds")), supported[0])
-    assert (decision.status, decision.fallback) == (2, 1)
-    assert decision.reasons == ("condensed boxqp: poisoned",)
+def test_the_active_set_steps_in_for_boxqp(world, supported, with_solvers):
+    chosen = with_solvers(boxqp=Broken("boxqp", "bounds"))
+    for step in supported[::10]:
+        decision = decide(world, chosen, step)
+        assert (decision.status, decision.fallback) == (1, 1)
+        assert decision.reasons == ("condensed boxqp: poisoned",)
+        assert decision.torque == pytest.approx(step.decision.torque, abs=1e-3)
+        assert decision.used.tolist() == step.decision.used.tolist()
 
 
 def test_iterations_count_every_pass(world, supported, with_solvers):

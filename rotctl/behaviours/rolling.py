@@ -7,9 +7,10 @@ zero in-plane stiffness leaves the excursion and the distance free.
 """
 
 import math
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control import Desired
@@ -40,6 +41,7 @@ class RollingSettings:
     Attributes:
         angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
         speed: commanded in-plane speed of the centre of mass [m/s].
+        align_with_slope: whether that speed is along the slope (section 6) or level.
     """
 
     name: str
@@ -47,6 +49,7 @@ class RollingSettings:
     angular_velocity: Finite
     speed: Finite
     poses: Poses
+    align_with_slope: Annotated[bool, Strict()]
     source: str = ""
     description: str = ""
 
@@ -73,15 +76,17 @@ class Rolling:
         self._correction_time = correction_time
         self._period = period
         self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * ROLLING_AXIS
-        self._velocity = np.array([settings.speed, 0.0, 0.0])
+        slope = model.ground.slope
+        along = slope if settings.align_with_slope else 0.0
+        self._velocity = settings.speed * np.array([np.cos(along), 0.0, np.sin(along)])
         self._poses = make_pose_pair(model, settings.poses.a, settings.poses.b)
 
     def pose(self, phase: float) -> Array:
         """The pose (nu,) [rad] a run starts in at that phase: r_a, the tuck."""
-        return self._poses.at(phase)[0]
+        return self._poses.at(phase)[0]  # the start's pitch is relative to the slope
 
     def begin(self, phase: float) -> Excursion:
-        """Excursion at the start: phi_0 is the pitch of the pelvis, so phi_y is the phase."""
+        """Excursion at the start: phi_0 is the pelvis's pitch against the slope."""
         return excursion.start(phase * ROLLING_AXIS)
 
     def advance(self, before: Excursion, state: State) -> Excursion:

@@ -19,6 +19,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.qp import Solution, Solver, make_solver
+from rotctl.qp.active_set import ActiveSet
 from rotctl.rotations import Array
 
 NOT_BUILT = (
@@ -53,6 +54,7 @@ class Controller:
         self.chain: list[tuple[str, Solver]] = [(settings.form, solver)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
             self.chain.append(("condensed", make_solver("boxqp")))
+        self.chain.append(("condensed", ActiveSet()))
         wanted = settings.backend == "compiled" and serves(settings, model)
         self._step = CompiledStep(model, settings) if wanted and library() else None
         self.backend: BackendName = "compiled" if self._step else "reference"

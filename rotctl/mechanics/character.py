@@ -8,10 +8,9 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
 from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Range, Vector
 
-CHARACTER_CONTACT = 1  # contype of the character's geoms
-GROUND_CONTACT = 2  # contype of the ground's geoms
 Colour = tuple[Fraction, Fraction, Fraction]
 
 

@@ -11,11 +11,12 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character, add_character
-from rotctl.mechanics.terrain import Terrain, add_terrain
+from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
 
 ROOT_DOFS = 6
+TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it
 PLAIN_OPTIONS = (
     "iterations",
     "tolerance",
@@ -93,14 +94,21 @@ class Model:
     trunk: NDArray[np.int64]
     trunk_weights: Array
     excluded: NDArray[np.bool_]
-    terrain: Terrain
+    ground: Ground
 
 
-def build(character: Character, terrain: Terrain, physics: Physics, control_rate: float) -> Model:
+def build(
+    character: Character,
+    terrain: Terrain,
+    physics: Physics,
+    control_rate: float,
+    seed: int = 0,
+) -> Model:
     """Compile a model.
 
     Args:
         control_rate: [Hz]; the physics step is 1 / (control_rate * substeps).
+        seed: of a terrain that is drawn at random.
 
     Raises:
         InputError: the numbers do not make a model, or the model is not as tall as it says.
@@ -111,7 +119,9 @@ def build(character: Character, terrain: Terrain, physics: Physics, control_rate
     _set_options(spec, physics, control_rate)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    add_terrain(spec, terrain)
+    ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]))
+    add_tiles(spec)
+    ground.add(spec)
     try:
         add_character(spec, character)
         mj = spec.compile()
@@ -137,7 +147,7 @@ def build(character: Character, terrain: Terrain, physics: Physics, control_rate
         trunk=trunk,
         trunk_weights=(mj.body_mass[trunk] / mj.body_mass[trunk].sum())[:, None],
         excluded=excluded,
-        terrain=terrain,
+        ground=ground,
     )
 
 

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.mechanics.model import Model, lowest_and_highest
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, cross
 from rotctl.settings import STRICT, Range
 
@@ -58,18 +58,36 @@ def draw(settings: StartSettings, generator: np.random.Generator) -> Start:
 
 
 def place(model: Model, data: mujoco.MjData, start: Start, pose: Array) -> None:
-    """Put the character into `pose` (nu,) [rad], its lowest point on the ground, moving."""
+    """Put the character into `pose` (nu,) [rad], its lowest point on the ground, moving.
+
+    On a slope, pitch and velocity are relative to it.
+    """
     mj = model.mj
     mujoco.mj_resetData(mj, data)
     data.qpos[7:] = pose
-    half = 0.5 * start.pitch
+    slope = model.ground.slope
+    half = 0.5 * (start.pitch - slope)
     data.qpos[3:7] = [np.cos(half), 0.0, np.sin(half), 0.0]
     mujoco.mj_kinematics(mj, data)
-    solid = (mj.geom_bodyid > 0) & (mj.geom_contype > 0)
-    lowest, _ = lowest_and_highest(mj, data, solid)
-    data.qpos[2] += model.terrain.height(0.0, 0.0) - lowest
+    data.qpos[2] -= _clearance(model, data)
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[1] - data.subtree_com[1]
-    data.qvel[:3] = start.velocity + cross(start.angular_velocity, offset)
+    x, y, z = start.velocity
+    velocity = np.array([x * np.cos(slope), y, z + x * np.sin(slope)])
+    data.qvel[:3] = velocity + cross(start.angular_velocity, offset)
     data.qvel[3:6] = data.xmat[1].reshape(3, 3).T @ start.angular_velocity
+
+
+def _clearance(model: Model, data: mujoco.MjData) -> float:
+    """How far the character can be lowered before it touches the ground [m]."""
+    mj, ground = model.mj, model.ground
+    least = np.inf
+    for geom in np.flatnonzero((mj.geom_bodyid > 0) & (mj.geom_contype > 0)):
+        capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
+        half = mj.geom_size[geom, 1] * capsule * data.geom_xmat[geom].reshape(3, 3)[:, 2]
+        for x, y, z in (data.geom_xpos[geom] + half, data.geom_xpos[geom] - half):
+            # A sphere on the plane that touches the ground below its centre.
+            upright = ground.normal(x, y)[2]
+            least = min(least, z - ground.height(x, y) - mj.geom_size[geom, 0] / upright)
+    return float(least)

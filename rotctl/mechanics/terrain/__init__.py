@@ -1,0 +1,25 @@
+"""The ground: what it looks like to the physics, and its height and normal at a point."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from rotctl.mechanics.terrain.ground import CHARACTER_CONTACT, GROUND_CONTACT, Ground, add_tiles
+from rotctl.mechanics.terrain.plane import Flat, Plane, Slope
+from rotctl.mechanics.terrain.stairs import Stairs
+from rotctl.mechanics.terrain.uneven import Uneven
+
+Terrain = Annotated[Flat | Slope | Stairs | Uneven, Field(discriminator="kind")]
+
+__all__ = [
+    "CHARACTER_CONTACT",
+    "GROUND_CONTACT",
+    "Flat",
+    "Ground",
+    "Plane",
+    "Slope",
+    "Stairs",
+    "Terrain",
+    "Uneven",
+    "add_tiles",
+]
