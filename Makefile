@@ -39,7 +39,11 @@ run: setup ## simulate a forward roll, with a progress bar; writes the log and a
 
 .PHONY: test
 test: lint ## lint, types, floors, then the fast tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto
+
+.PHONY: torture
+torture: setup ## the long tests: sweeps of 200 runs whose processes are killed again and again
+	$(BIN)/python -m pytest -m slow
 
 .PHONY: setup
 setup: $(STAMP) ## make .venv from requirements.lock (a second call does nothing)

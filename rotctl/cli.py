@@ -33,6 +33,7 @@ examples:
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
 the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
 """
+OVERHEAD_RUNS = 480  # of a sweep that rotctl bench times
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
 
@@ -450,11 +451,14 @@ def _inspect(arguments: argparse.Namespace) -> int:
 
 def _bench(arguments: argparse.Namespace) -> int:
     from rotctl.bench import bench
+    from rotctl.sweep import overhead
 
     if arguments.repeats < 1:
         raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
     for table in bench(arguments.repeats, arguments.plot):
         print(table, end="\n\n", flush=True)
+    sizes = ((OVERHEAD_RUNS, 1.0, 2), (OVERHEAD_RUNS // 4, 20.0, 1), (OVERHEAD_RUNS // 4, 20.0, 2))
+    print(overhead.table([overhead.measure(*size) for size in sizes]))
     return 0
 
 

@@ -12,13 +12,12 @@ FLOOR_DEPTH = 1.0  # [m] thickness of boxes; deep enough that nothing falls thro
 
 
 class Ground(Protocol):
-    """The ground of one run.
+    """The ground of one run."""
 
-    Attributes:
-        slope: climb of the line of travel [rad]; 0 where it only goes up and down.
-    """
-
-    slope: float
+    @property
+    def slope(self) -> float:
+        """Climb of the line of travel [rad]; 0 where it only goes up and down."""
+        ...
 
     def height(self, x: float, y: float) -> float:
         """Height of the ground [m] at world (x, y) [m]."""
