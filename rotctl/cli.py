@@ -33,7 +33,7 @@ examples:
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
 the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
 """
-OVERHEAD_RUNS = 480  # of a sweep that rotctl bench times
+OVERHEAD_RUNS = 1000  # of a sweep that rotctl bench times
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
 
@@ -238,7 +238,8 @@ def _parser() -> argparse.ArgumentParser:
     bench = commands.add_parser(
         "bench",
         help="where the time goes",
-        description="Measure the split of a control step on the states of a real forward roll.",
+        description="Measure where the time goes: a control step, whole processes, solvers, "
+        "contacts and hinges, sweeps. Takes some minutes.",
     )
     bench.add_argument("--repeats", type=int, default=5, help="median over this many [%(default)s]")
     bench.add_argument("--plot", type=Path, metavar="OUT.svg", help="plot cost against contacts")
@@ -457,13 +458,15 @@ def _bench(arguments: argparse.Namespace) -> int:
         raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
     for table in bench(arguments.repeats, arguments.plot):
         print(table, end="\n\n", flush=True)
-    sizes = ((OVERHEAD_RUNS, 1.0, 2), (OVERHEAD_RUNS // 4, 20.0, 1), (OVERHEAD_RUNS // 4, 20.0, 2))
+    sizes = ((OVERHEAD_RUNS, 1.0, 2), (OVERHEAD_RUNS // 8, 20.0, 1), (OVERHEAD_RUNS // 8, 20.0, 2))
     print(overhead.table([overhead.measure(*size) for size in sizes]))
     return 0
 
 
 def _sweep(arguments: argparse.Namespace) -> int:
     from contextlib import closing
+
+    from tqdm import tqdm
 
     from rotctl.sweep.engines import make_engine
     from rotctl.sweep.experiments import matrix
@@ -482,7 +485,9 @@ def _sweep(arguments: argparse.Namespace) -> int:
             print(without_running(runs, arguments.out, engine.workers))
             return 0
         with locked(arguments.out):
-            there = plan(runs, arguments.out, arguments.strict)
+            watched = None if not arguments.quiet else True  # None: only on a terminal
+            with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as bar:
+                there = plan(runs, arguments.out, arguments.strict, bar.update)
             if not arguments.quiet:
                 print(at_the_start(there, arguments.out, engine.where), file=sys.stderr, flush=True)
             with shown(len(runs), len(there.done), arguments.quiet) as progress:

@@ -22,7 +22,7 @@ REFUSED = [
         "has <include>, which a log's model may not have",
     ),
     (
-        mjcf("<asset><mesh name='m' file='/tmp/m.obj'/></asset>"),
+        mjcf("<asset><mesh name='m' file='/elsewhere/m.obj'/></asset>"),
         "has <mesh>, which a log's model may not have",
     ),
     (

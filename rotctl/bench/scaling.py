@@ -15,7 +15,7 @@ from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
-CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 22, 32)
+CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 24)  # the adult has no more than 25
 HINGES = (29, 37, 46, 58)
 AT = 8  # contacts, where hinges vary
 TRIES = 60  # repeats of one decision; the least disturbed is taken
@@ -105,6 +105,8 @@ def _lying(model: Model, contacts: int) -> mujoco.MjData:
     mujoco.mj_step1(model.mj, data)
     model.mj.geom_margin[:] = margin
     ground = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))
+    if len(ground) < contacts:
+        raise InputError(f"the character lies on {len(ground)} points, {contacts} are asked for")
     for i in ground[contacts:]:
         data.contact[int(i)].efc_address = -1
     return data

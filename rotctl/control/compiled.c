@@ -3,8 +3,8 @@
 // The Python beside this file is the reference and says what is computed and why
 // (mechanics/state.py, control/pose.py, terms.py, condensed.py, supervisor.py). This is the
 // same mathematics on preallocated memory; a test holds both to the same torques. Whatever
-// fails here (a solver that stops short, too many contacts) is reported and done again by
-// the reference.
+// fails here (a solver that stops short, too many contacts) is done again by the reference,
+// which alone decides whether it counts as a failure.
 
 #include <math.h>
 #include <stdlib.h>
@@ -70,7 +70,7 @@ typedef struct {
   Functions mj;
   Constants c;
   int nv, nu;
-  double *bias, *diagonal, *velocity;                  // (nv)
+  double *bias, *diagonal;                             // (nv)
   double *jacobian, *solved;                           // (ROWS + 1, nv)
   double *tau_a, *tau_b, *difference, *torque;         // (nu)
   double *A, *BB, *GG;                                 // (ROWS, ROWS) of all candidates
@@ -121,6 +121,19 @@ static int cholesky(double* a, int n) {
 
 int rotctl_mujoco_version(void) { return mjVERSION_HEADER; }
 
+// Sizes that the Python side must share, so that a library built from other source is refused.
+int rotctl_layout(void) {
+  return sizeof(Constants) + 7 * sizeof(Reading) + 49 * sizeof(Wishes) + 343 * sizeof(Answer);
+}
+
+void rotctl_free(Self* s) {
+  double* all[] = {s->bias, s->diagonal, s->jacobian, s->solved, s->tau_a,
+                   s->tau_b, s->difference, s->torque, s->A, s->BB, s->GG, s->reach, s->Q,
+                   s->H, s->f, s->Hs, s->fs, s->x, s->lower, s->upper, s->work, s->t1, s->t2};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
+  free(s);
+}
+
 Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const Constants* c) {
   Self* s = calloc(1, sizeof(Self));
   if (!s) return 0;
@@ -130,23 +143,18 @@ Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const C
     double** p;
     size_t size;
   } need[] = {
-      {&s->bias, nv}, {&s->diagonal, nv}, {&s->velocity, nv}, {&s->jacobian, (ROWS + 1) * nv},
+      {&s->bias, nv}, {&s->diagonal, nv}, {&s->jacobian, (ROWS + 1) * nv},
       {&s->solved, (ROWS + 1) * nv}, {&s->tau_a, nu}, {&s->tau_b, nu}, {&s->difference, nu},
       {&s->torque, nu}, {&s->A, ROWS * ROWS}, {&s->BB, ROWS * ROWS}, {&s->GG, ROWS * ROWS},
       {&s->reach, ROWS * (ROWS + 2 + nv)}, {&s->Q, ROWS * ROWS}, {&s->H, n * n}, {&s->f, n},
       {&s->Hs, n * n}, {&s->fs, n}, {&s->x, n}, {&s->lower, n}, {&s->upper, n},
       {&s->work, n * (n + 7)}, {&s->t1, n * n}, {&s->t2, n * n}};
   for (size_t i = 0; i < sizeof need / sizeof *need; i++)
-    if (!(*need[i].p = malloc(need[i].size * sizeof(double)))) return 0;
+    if (!(*need[i].p = malloc(need[i].size * sizeof(double)))) {
+      rotctl_free(s);
+      return 0;
+    }
   return s;
-}
-
-void rotctl_free(Self* s) {
-  double* all[] = {s->bias, s->diagonal, s->velocity, s->jacobian, s->solved, s->tau_a,
-                   s->tau_b, s->difference, s->torque, s->A, s->BB, s->GG, s->reach, s->Q,
-                   s->H, s->f, s->Hs, s->fs, s->x, s->lower, s->upper, s->work, s->t1, s->t2};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
-  free(s);
 }
 
 // mechanics/state.py: momentum, contacts, bias, lateral axis. FAILED on too many contacts.
@@ -203,16 +211,6 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     r->friction[j][0] = k->friction[0], r->friction[j][1] = k->friction[1];
   }
   return r->count;
-}
-
-// World forces that the last physics solve gave the contacts of the reading, elliptic cone.
-void rotctl_realised(const Reading* r, const mjData* d, double* out) {
-  for (int k = 0; k < r->count; k++)
-    for (int j = 0; j < 3; j++) {
-      double sum = 0;
-      for (int i = 0; i < 3; i++) sum += r->frame[k][3 * i + j] * d->efc_force[r->row[k] + i];
-      out[3 * k + j] = sum;
-    }
 }
 
 // control/pose.py: stable PD torques towards two poses.
@@ -292,10 +290,10 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
   for (int i = 0; i < n; i++) scale[i] = 1 / sqrt(Hs[i * n + i] + 1e-12);
   double check = 0;
   for (int i = 0; i < n; i++) {
-    for (int j = 0; j < n; j++) Hs[i * n + j] *= scale[i] * scale[j];
+    for (int j = 0; j < n; j++) check += Hs[i * n + j] *= scale[i] * scale[j];
     Hs[i * n + i] += c->diagonal;
     s->fs[i] *= scale[i];
-    check += Hs[i * n] + s->fs[i];
+    check += s->fs[i];
     s->lower[i] = i < head ? -c->torque_limit[i] / scale[i] : 0;
     double upper = i < head ? c->torque_limit[i] : i < n - 1 ? INFINITY : 1;
     s->upper[i] = upper / scale[i];

@@ -113,10 +113,14 @@ class _Answer(ctypes.Structure):
 
 @lru_cache(maxsize=1)
 def library() -> ctypes.CDLL | None:
-    """The built library; None where there is none, or it was built for another MuJoCo."""
+    """The built library; None where there is none, or it was built for other code or MuJoCo."""
     try:
         found = ctypes.CDLL(str(LIBRARY))
-    except OSError:
+        layout = found.rotctl_layout()
+    except (OSError, AttributeError):
+        return None
+    ours = (_Constants, 1), (_Reading, 7), (_Wishes, 49), (_Answer, 343)
+    if layout != sum(factor * ctypes.sizeof(structure) for structure, factor in ours):
         return None
     found.rotctl_new.restype = _pointer
     found.rotctl_new.argtypes = [_pointer] * 4
@@ -181,6 +185,7 @@ class CompiledStep:
 
     def read(self, data: mujoco.MjData) -> State | None:
         """The state, as `rotctl.mechanics.state.read` reads it; None if there is no room."""
+        self._last = None  # what C keeps is overwritten now, whatever comes of it
         m = self._library.rotctl_read(self._self, data._address, self._pointers[0])
         if m == FAILED:
             return None

@@ -96,7 +96,9 @@ SCHEMA: dict[str, DatasetSpec] = {
         "1",
         "0 solved, 1 solved by a fallback, 2 all solvers failed and the pose torque was used",
     ),
-    "solver/iterations": DatasetSpec("<i4", ("steps",), "1", "iterations of the solver"),
+    "solver/iterations": DatasetSpec(
+        "<i4", ("steps",), "1", "iterations, 0 where the solver does not tell"
+    ),
     "solver/residual": _per_step("1", "largest residual of the solution, in the solver's scaling"),
     "solver/fallback": DatasetSpec(
         "i1", ("steps",), "1", "link of the chain that gave the torque, 0 = the chosen solver"

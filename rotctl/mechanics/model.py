@@ -80,6 +80,7 @@ class Model:
         trunk: body ids whose lateral axes define the rolling axis.
         trunk_weights: (len(trunk), 1) their shares of the trunk's mass.
         excluded: (nbody,) True where a body's contacts are held out of control.
+        ground: what it stands on.
     """
 
     mj: mujoco.MjModel
@@ -127,7 +128,9 @@ def build(
         mj = spec.compile()
     except ValueError as error:
         reason = str(error).strip().splitlines()[0]
-        raise InputError(f"character {character.name!r} does not compile: {reason}") from None
+        raise InputError(
+            f"character {character.name!r} on terrain {terrain.name!r} does not compile: {reason}"
+        ) from None
     _check(mj, character)
     trunk = np.array([_body_id(mj, name, "character.trunk") for name in character.trunk])
     excluded = np.zeros(mj.nbody, dtype=bool)
@@ -205,7 +208,7 @@ def lowest_and_highest(
 
 def _body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
-    if number < 0:
+    if number < 1:  # 0 is the world
         names = ", ".join(mj.body(i).name for i in range(1, mj.nbody))
         raise InputError(f"{key} names the unknown body {name!r}; bodies: {names}")
     return int(number)

@@ -134,8 +134,8 @@ def failure_reason(metrics: RollingMetrics, criteria: RollingCriteria, wanted: f
         return f"every solver failed on {metrics.solver_failures} control steps"
     if metrics.longest_stall >= criteria.stall_time:
         return f"stalled for {metrics.longest_stall:.2f} s from t = {metrics.stalled_at:.2f} s"
-    if abs(metrics.heading_error_end) >= criteria.heading:
+    if not abs(metrics.heading_error_end) < criteria.heading:
         return f"heading off by {metrics.heading_error_end:.0f} deg at the end"
-    if metrics.lateral_drift >= criteria.lateral_drift:
+    if not metrics.lateral_drift < criteria.lateral_drift:
         return f"drifted {metrics.lateral_drift:.2f} m sideways"
     return ""

@@ -49,7 +49,8 @@ def measure(runs: int, duration: float, jobs: int) -> Overhead:
     with tempfile.TemporaryDirectory() as folder:
         begin = time.perf_counter()
         command = [sys.executable, "-m", "rotctl", "sweep", *overrides, "--quiet"]
-        subprocess.run([*command, "--jobs", str(jobs), "--out", str(Path(folder, "runs"))])
+        out = str(Path(folder, "runs"))
+        subprocess.run([*command, "--jobs", str(jobs), "--out", out], check=True)
         wall = time.perf_counter() - begin
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 import mujoco
 import numpy as np
-from pydantic import Field
+from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.terrain.ground import FLOOR_DEPTH, add_geom
@@ -27,7 +27,7 @@ class Stairs:
     direction: Literal["up", "down"]
     riser: Annotated[Positive, Field(le=0.5)]
     tread: Annotated[Positive, Field(ge=0.1, le=5)]
-    count: Annotated[int, Field(ge=1, le=500)]
+    count: Annotated[int, Strict(), Field(ge=1, le=500)]
     run_in: NonNegative
     description: str = ""
 

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.terrain.ground import FLOOR_DEPTH, add_geom
@@ -36,7 +36,7 @@ class Uneven:
     friction: Positive
     height: Annotated[NonNegative, Field(le=1)]
     wavelength: Annotated[Positive, Field(ge=0.5)]
-    bumps: Annotated[int, Field(ge=0, le=5000)]
+    bumps: Annotated[int, Strict(), Field(ge=0, le=5000)]
     bump_height: Annotated[NonNegative, Field(le=0.3)]
     run_in: NonNegative
     description: str = ""
