@@ -6,24 +6,15 @@ import numpy as np
 import pytest
 
 from rotctl.config import load
-from rotctl.run import summarise
+from rotctl.run import in_memory, summarise
 from rotctl.scenario import build
-from rotctl.simulation.loop import simulate
 
 
 def roll(*overrides):
     """Summary and buffer of a simulated roll."""
     scenario = build(load(list(overrides)))
-    outcome = simulate(
-        scenario.model,
-        scenario.behaviour,
-        scenario.controller,
-        scenario.stepper,
-        scenario.start,
-        scenario.config.duration,
-        64,
-    )
-    return summarise(scenario, outcome.buffer, outcome.breakdown, 1.0), outcome.buffer
+    buffer, breakdown = in_memory(scenario)
+    return summarise(scenario, buffer, breakdown, 1.0), buffer
 
 
 @pytest.mark.parametrize("behaviour", ["forward_roll_1", "forward_roll_1_phase"])
@@ -75,16 +66,8 @@ def test_without_the_pose_objective_it_does_not_roll():
 def test_the_commanded_direction_counts():
     """Rolling forwards under a backward command is a stall."""
     scenario = build(load(["duration=2"]))
-    outcome = simulate(
-        scenario.model,
-        scenario.behaviour,
-        scenario.controller,
-        scenario.stepper,
-        scenario.start,
-        2.0,
-        64,
-    )
+    buffer, _ = in_memory(scenario)
     backward = replace(scenario.config.behaviour, angular_velocity=-1.3)
     config = replace(scenario.config, behaviour=backward)
-    summary = summarise(replace(scenario, config=config), outcome.buffer, "", 1.0)
+    summary = summarise(replace(scenario, config=config), buffer, "", 1.0)
     assert not summary["success"]

@@ -23,7 +23,7 @@ from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum
 from rotctl.mechanics.state import State
-from rotctl.qp.boxqp import DIAGONAL, TOLERANCE
+from rotctl.qp.scaling import DIAGONAL, TOLERANCE
 
 LIBRARY = Path(__file__).with_name("_compiled.so")
 CAPACITY = 64  # CONTACTS in compiled.c

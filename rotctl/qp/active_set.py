@@ -8,7 +8,6 @@ as the first bound; where none is met, the variable whose multiplier is most wro
 
 import numpy as np
 
-from rotctl.qp.boxqp import DIAGONAL, TOLERANCE
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.qp.scaling import Scaled, scale
 from rotctl.rotations import Array
@@ -29,16 +28,11 @@ class ActiveSet:
         if reason:
             return failed(problem, reason)
         scaled = scale(problem)
-        n = len(problem.f)
-        H = scaled.H.copy()
-        H.flat[:: n + 1] += DIAGONAL
-        z = np.zeros(n) if start is None else start / scaled.scale
-        z = np.minimum(np.maximum(z, scaled.lower), scaled.upper)
         try:
-            found = _descend(scaled, H, z)
+            found = _descend(scaled, scaled.regularised(), scaled.start(start))
         except np.linalg.LinAlgError as error:
             return failed(problem, str(error))
-        return scaled.solution(found, TOLERANCE)
+        return scaled.solution(found)
 
 
 def _descend(scaled: Scaled, H: Array, z: Array) -> Array:

@@ -4,14 +4,8 @@ import mujoco
 import numpy as np
 
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
-from rotctl.qp.scaling import natural_residual, scale
+from rotctl.qp.scaling import DIAGONAL, TOLERANCE, natural_residual, scale
 from rotctl.rotations import Array
-
-# Added to the unit diagonal of the scaled Hessian. Four generators span a contact's three
-# force components, so the Hessian has a null space along which the force does not change;
-# this picks one point of it.
-DIAGONAL = 1e-7
-TOLERANCE = 1e-6  # accepted natural residual of the scaled problem [-]
 
 
 class BoxQP:
@@ -27,10 +21,7 @@ class BoxQP:
             return failed(problem, reason)
         scaled = scale(problem)
         lower, upper = scaled.lower, scaled.upper
-        H = scaled.H.copy()
-        H.flat[:: len(problem.f) + 1] += DIAGONAL
-        x = np.zeros(len(problem.f)) if start is None else start / scaled.scale
-        x = np.minimum(np.maximum(x, lower), upper)
+        H, x = scaled.regularised(), scaled.start(start)
         reason = _minimise(H, scaled.f, lower, upper, x)
         if reason:
             return failed(problem, reason)
@@ -38,7 +29,7 @@ class BoxQP:
         refined = x.copy()
         if not _minimise(H, scaled.f - DIAGONAL * x, lower, upper, refined):
             x = refined
-        return scaled.solution(x, TOLERANCE)
+        return scaled.solution(x)
 
 
 def _minimise(H: Array, f: Array, lower: Array, upper: Array, x: Array) -> str:

@@ -7,6 +7,11 @@ import numpy as np
 from rotctl.qp.problem import Problem, Solution
 from rotctl.rotations import Array
 
+# Added to the unit diagonal of the scaled Hessian. Four generators span a contact's three
+# force components, so the Hessian has a null space along which the force does not change;
+# this picks one point of it.
+DIAGONAL = 1e-7
+TOLERANCE = 1e-6  # accepted natural residual of the scaled problem [-]
 SMALLEST_WIDTH = 1e-9  # mju_boxQP refuses a lower bound equal to its upper one
 
 
@@ -20,12 +25,23 @@ class Scaled:
     lower: Array
     upper: Array
 
-    def solution(self, z: Array, tolerance: float) -> Solution:
+    def regularised(self) -> Array:
+        """The Hessian with `DIAGONAL` added (n, n)."""
+        H = self.H.copy()
+        H.flat[:: len(self.f) + 1] += DIAGONAL
+        return H
+
+    def start(self, guess: Array | None) -> Array:
+        """A point z (n,) inside the bounds: the guess of x, or zero, brought there."""
+        z = np.zeros(len(self.f)) if guess is None else guess / self.scale
+        return np.asarray(np.minimum(np.maximum(z, self.lower), self.upper))
+
+    def solution(self, z: Array) -> Solution:
         """The answer z in the problem's own variables, solved if its residual is small."""
         residual = natural_residual(self.H, self.f, self.lower, self.upper, z)
-        if residual <= tolerance:
+        if residual <= TOLERANCE:
             return Solution(z * self.scale, True, 0, residual)
-        reason = f"residual {residual:.1e} exceeds {tolerance:.0e}"
+        reason = f"residual {residual:.1e} exceeds {TOLERANCE:.0e}"
         return Solution(z * self.scale, False, 0, residual, reason)
 
 
