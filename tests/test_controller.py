@@ -155,7 +155,7 @@ def head_stand(world):
     """A state on its head, in the pose of a recorded step, and that step."""
     data = mujoco.MjData(world.mj)
     start = Start(pitch=np.pi, velocity=np.zeros(3), angular_velocity=np.zeros(3))
-    place(world.model, data, start, np.zeros(world.mj.nu))
+    place(world.model, data, start, world.scenario.behaviour.orientation, np.zeros(world.mj.nu))
     data.qpos[2] -= 0.02
     step = replace(world.steps[0], position=data.qpos.copy(), velocity=data.qvel.copy())
     return world.state(step), step

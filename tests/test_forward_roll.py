@@ -41,7 +41,7 @@ def test_it_uses_the_whole_body():
 def test_a_symmetric_start_stays_in_plane():
     _, buffer = roll("start=symmetric", "duration=3")
     assert np.abs(buffer.trajectory.com[:, 1]).max() <= 1e-4
-    assert np.abs(buffer.trajectory.lateral_axis[:, [0, 2]]).max() <= 1e-4
+    assert np.abs(buffer.trajectory.trunk_axis[:, [0, 2]]).max() <= 1e-4
 
 
 def test_forces_in_the_log_explain_the_momentum():

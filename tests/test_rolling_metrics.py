@@ -43,7 +43,7 @@ def make_log(steps=600, rate=0.5, speed=0.6, heading=0.0, lateral=0.0):
     log = {
         "trajectory/com": np.outer(time, [speed, lateral, 0.0]) + [2.0, -1.0, 0.5],
         "trajectory/angular_excursion": 2 * np.pi * np.outer(time, [0, rate, 0]) + [9.0, -4.0, 9.0],
-        "trajectory/lateral_axis": np.stack((-np.sin(turn), np.cos(turn), 0 * turn), axis=1),
+        "trajectory/trunk_axis": np.stack((-np.sin(turn), np.cos(turn), 0 * turn), axis=1),
         "trajectory/ctrl": np.zeros((steps, 2)),
         "model/torque_limit": np.array([10.0, 20.0]),
         "solver/status": np.zeros(steps, dtype=np.uint8),

@@ -16,6 +16,7 @@ STARTS = [
     Start(2.5, np.array([-0.6, 0.1, 0.0]), np.array([0.0, -3.0, 0.3])),
     Start(0.0, np.zeros(3), np.zeros(3)),
 ]
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 RANGES = StartSettings(
     name="test",
     pitch=(-0.6, 0.0),
@@ -34,7 +35,7 @@ def placed(request, world):
     pose = np.random.default_rng(request.param).uniform(low, high)
     data = mujoco.MjData(world.mj)
     data.qpos[:], data.qvel[:], data.time = 7.0, 7.0, 3.0  # leftovers of another run
-    place(world.model, data, STARTS[request.param], pose)
+    place(world.model, data, STARTS[request.param], UPRIGHT, pose)
     return STARTS[request.param], pose, data
 
 
@@ -92,7 +93,8 @@ def test_same_seed_same_state(world):
     def first_state(seed):
         made = scenario.build(replace(world.config, seed=seed, start=RANGES))
         data = mujoco.MjData(made.model.mj)
-        place(made.model, data, made.start, made.behaviour.pose(made.start.pitch))
+        behaviour = made.behaviour
+        place(made.model, data, made.start, behaviour.orientation, behaviour.pose(made.start.pitch))
         return data.qpos.tobytes() + data.qvel.tobytes()
 
     assert first_state(5) == first_state(5)

@@ -57,7 +57,13 @@ def test_normals_are_unit_and_stand_on_the_slope(scenario):
 def test_starts_touch_the_ground_and_do_not_sink_in(scenario):
     model = scenario.model
     data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, scenario.behaviour.pose(scenario.start.pitch))
+    place(
+        model,
+        data,
+        scenario.start,
+        scenario.behaviour.orientation,
+        scenario.behaviour.pose(scenario.start.pitch),
+    )
     mujoco.mj_forward(model.mj, data)
     solid = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))
     assert (data.contact.dist[solid] > -0.005).all()

@@ -1,5 +1,8 @@
 """Continuous rolling, [Brown2013] section 6.
 
+A character rolls to +x, about +y. Which of the trunk's axes it keeps there makes the roll:
+`left` a forward roll, `right` a backward roll (facing -x), `head` a log roll (lying across).
+
 In-plane (about the rolling axis y, along the rolling direction x) the angular velocity and
 the speed are held constant and their integrals are left free; out of plane, AE and AV are
 held at zero and the lateral and vertical velocities are damped. All of that is gains: a
@@ -7,6 +10,7 @@ zero in-plane stiffness leaves the excursion and the distance free.
 """
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -23,7 +27,30 @@ from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
+ALONG = np.array([1.0, 0.0, 1.0])  # free along the way and up; the line of travel is y = 0
 UPRIGHT = np.zeros(3)  # phi_hat; in-plane it has no stiffness
+
+RollAbout = Literal["left", "right", "head"]
+
+
+@dataclass(frozen=True)
+class Facing:
+    """How a trunk lies on the rolling axis.
+
+    Attributes:
+        trunk_axis: (3,) what it rolls about, unit, in the trunk's frame of front, left, up.
+        orientation: (4,) of the trunk at phase 0, unit quaternion: takes that axis to +y.
+    """
+
+    trunk_axis: Array
+    orientation: Array
+
+
+FACING: dict[RollAbout, Facing] = {
+    "left": Facing(np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0])),
+    "right": Facing(np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 0.0, 1.0])),
+    "head": Facing(np.array([0.0, 0.0, 1.0]), np.array([0.5, -0.5, -0.5, -0.5])),
+}
 
 
 @validated(frozen=True, config=STRICT)
@@ -41,11 +68,13 @@ class RollingSettings:
     Attributes:
         angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
         speed: commanded in-plane speed of the centre of mass [m/s].
+        roll_about: the trunk's axis that is kept on the rolling axis, see `FACING`.
         align_with_slope: whether that speed is along the slope (section 6) or level.
     """
 
     name: str
     kind: Literal["rolling"]
+    roll_about: RollAbout
     angular_velocity: Finite
     speed: Finite
     poses: Poses
@@ -55,7 +84,11 @@ class RollingSettings:
 
 
 class Rolling:
-    """The rolling behaviour of one run."""
+    """The rolling behaviour of one run.
+
+    Attributes:
+        orientation: (4,) of the trunk at phase 0 on level ground, unit quaternion.
+    """
 
     def __init__(
         self,
@@ -72,6 +105,9 @@ class Rolling:
             correction_time: of the `oriented` excursion [s].
             period: of the control [s].
         """
+        facing = FACING[settings.roll_about]
+        self.orientation = facing.orientation
+        self._trunk_axis = facing.trunk_axis
         self._name = excursion_name
         self._correction_time = correction_time
         self._period = period
@@ -89,26 +125,33 @@ class Rolling:
         """Excursion at the start: phi_0 is the pelvis's pitch against the slope."""
         return excursion.start(phase * ROLLING_AXIS)
 
+    def trunk_axis(self, state: State) -> Array:
+        """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
+        return state.trunk_axes @ self._trunk_axis
+
     def advance(self, before: Excursion, state: State) -> Excursion:
         """Excursion now, from that of the previous control step."""
         return excursion.integrate(
             before,
             state.momentum.angular_velocity,
-            state.lateral_axis,
+            self.trunk_axis(state),
             ROLLING_AXIS,
             self._period,
             self._correction_time,
         )
 
     def phase(self, now: Excursion) -> float:
-        """Phase theta [rad]: 0 pelvis upright, pi/2 face down, pi on the upper back."""
+        """Phase theta [rad], turned from upright, or from lying on the back in a log roll.
+
+        Forward, pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
+        """
         return float(ROLLING_AXIS @ now.angle)
 
     def desired(self, state: State, now: Excursion) -> Desired:
         """What rolling wants at this instant."""
         pose_a, pose_b = self._poses.at(self.phase(now))
         return Desired(
-            com=state.momentum.com,
+            com=ALONG * state.momentum.com,
             com_velocity=self._velocity,
             excursion_error=excursion.error(now, UPRIGHT, ROLLING_AXIS, self._name),
             angular_velocity=self._angular_velocity,

@@ -43,7 +43,7 @@ typedef struct {
 // What `rotctl_read` finds; mirrored by `Reading` in compiled.py.
 typedef struct {
   double com[3], com_velocity[3], linear[3], angular[3], inertia[9], angular_velocity[3];
-  double rotation[9], offset[3], lateral_axis[3];
+  double rotation[9], offset[3], trunk_axes[9];
   double position[CONTACTS][3], frame[CONTACTS][9], friction[CONTACTS][2];
   int body[CONTACTS];
   long long row[CONTACTS];
@@ -157,7 +157,7 @@ Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const C
   return s;
 }
 
-// mechanics/state.py: momentum, contacts, bias, lateral axis. FAILED on too many contacts.
+// mechanics/state.py: momentum, contacts, bias, the trunk's axes. FAILED on too many contacts.
 int rotctl_read(Self* s, mjData* d, Reading* r) {
   const mjModel* m = s->m;
   int nv = s->nv;
@@ -186,12 +186,14 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     for (int k = i + 1; k < 3; k++) w[i] -= L[3 * k + i] * w[k];
     w[i] /= L[4 * i];
   }
-  double axis[3] = {0, 0, 0}, length = 0;
+  double* axes = r->trunk_axes;
+  memset(axes, 0, sizeof r->trunk_axes);
   for (int t = 0; t < s->c.trunk_count; t++)
-    for (int i = 0; i < 3; i++)
-      axis[i] += d->xmat[9 * s->c.trunk[t] + 3 * i + 1] * s->c.trunk_weight[t];
-  length = sqrt(dot(axis, axis, 3));
-  for (int i = 0; i < 3; i++) r->lateral_axis[i] = axis[i] / length;
+    for (int i = 0; i < 9; i++) axes[i] += d->xmat[9 * s->c.trunk[t] + i] * s->c.trunk_weight[t];
+  for (int k = 0; k < 3; k++) {
+    double length = sqrt(axes[k] * axes[k] + axes[3 + k] * axes[3 + k] + axes[6 + k] * axes[6 + k]);
+    for (int i = 0; i < 3; i++) axes[3 * i + k] /= length;
+  }
   for (int i = 0; i < nv; i++) {
     s->bias[i] = d->qfrc_bias[i] - d->qfrc_passive[i];
     s->diagonal[i] = d->M[m->M_rowadr[i] + m->M_rownnz[i] - 1];

@@ -77,7 +77,7 @@ class _Reading(ctypes.Structure):
         ("angular_velocity", _double * 3),
         ("rotation", _double * 9),
         ("offset", _double * 3),
-        ("lateral_axis", _double * 3),
+        ("trunk_axes", _double * 9),
         ("position", _double * (3 * CAPACITY)),
         ("frame", _double * (9 * CAPACITY)),
         ("friction", _double * (2 * CAPACITY)),
@@ -211,7 +211,7 @@ class CompiledStep:
                 row=self._read["row"][:m].copy(),
                 friction=self._read["friction"][: 2 * m].reshape(m, 2).copy(),
             ),
-            lateral_axis=found["lateral_axis"],
+            trunk_axes=found["trunk_axes"].reshape(3, 3),
             data=data,
         )
         return self._last

@@ -8,7 +8,7 @@ rolls off its axis.
 `oriented` repairs this. It integrates omega as an orientation, and compares where that
 orientation has carried the rolling axis with where the axis should be. As omega is not
 the velocity of any one body, the integral drifts from the body slowly; it is pulled to
-the trunk's mean lateral axis with a time constant. In-plane, both are the plain integral.
+the trunk's mean axis with a time constant. In-plane, both are the plain integral.
 """
 
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ def start(angle: Array) -> Excursion:
 def integrate(
     excursion: Excursion,
     angular_velocity: Array,
-    lateral_axis: Array,
+    trunk_axis: Array,
     rolling_axis: Array,
     period: float,
     correction_time: float,
@@ -51,14 +51,14 @@ def integrate(
 
     Args:
         angular_velocity: (3,) AV [rad/s].
-        lateral_axis: (3,) the trunk's mean lateral axis now, unit.
+        trunk_axis: (3,) the trunk's axis that should stay on the rolling axis, unit.
         rolling_axis: (3,) the axis the body should roll about, unit.
         period: [s].
         correction_time: time constant of the pull towards the trunk [s].
     """
     turn = angular_velocity * period
     orientation = advance(excursion.orientation, turn)
-    drift = cross(rotate(orientation, rolling_axis), lateral_axis)
+    drift = cross(rotate(orientation, rolling_axis), trunk_axis)
     pulled = advance(orientation, drift * min(1.0, period / correction_time))
     return Excursion(angle=excursion.angle + turn, orientation=pulled)
 

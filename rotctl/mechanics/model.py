@@ -77,7 +77,7 @@ class Model:
         diagonal: (nv,) addresses of the mass matrix's diagonal in `data.M`.
         mass: of the character [kg].
         gravity: (3,) [m/s2].
-        trunk: body ids whose lateral axes define the rolling axis.
+        trunk: body ids whose axes, averaged, are compared with the rolling axis.
         trunk_weights: (len(trunk), 1) their shares of the trunk's mass.
         excluded: (nbody,) True where a body's contacts are held out of control.
         ground: what it stands on.

@@ -21,7 +21,7 @@ class State:
         velocity: (nv,) generalised velocity [m/s, rad/s].
         momentum: rotation indices and centre of mass.
         contacts: contacts with the ground.
-        lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
+        trunk_axes: (3, 3) columns are the trunk's mean front, left and up, each unit, world.
         data: the MuJoCo data behind all this. What is read from it, and the properties
             below, hold until the physics steps.
     """
@@ -31,7 +31,7 @@ class State:
     velocity: Array
     momentum: Momentum
     contacts: Contacts
-    lateral_axis: Array
+    trunk_axes: Array
     data: mujoco.MjData
 
     @property
@@ -51,13 +51,13 @@ class State:
 
 def read(model: Model, data: mujoco.MjData) -> State:
     """Read the state; positions and velocities must have been evaluated (`mj_step1`)."""
-    axis = (data.xmat[model.trunk, 1::3] * model.trunk_weights).sum(axis=0)
+    axes = (data.xmat[model.trunk] * model.trunk_weights).sum(axis=0).reshape(3, 3)
     return State(
         time=data.time,
         position=data.qpos.copy(),
         velocity=data.qvel.copy(),
         momentum=read_momentum(model.mj, data),
         contacts=read_contacts(model.mj, data),
-        lateral_axis=axis / np.sqrt(axis @ axis),
+        trunk_axes=axes / np.sqrt((axes**2).sum(axis=0)),
         data=data,
     )

@@ -41,8 +41,8 @@ class RollingMetrics:
         revolutions: in-plane excursion in the direction commanded [rev].
         angular_velocity_mean: in-plane, after settling, with its sign [rev/s].
         speed_mean: of the centre of mass along x, after settling [m/s].
-        heading_error_end: median heading of the trunk's lateral axis over the last
-            second, against the rolling axis [deg]; positive turns left.
+        heading_error_end: median heading of the trunk's axis that it rolls about, over
+            the last second, against the rolling axis [deg]; positive turns left.
         lateral_drift: largest |y| of the centre of mass from where it started [m].
         longest_stall: longest time without the criterion's progress [s].
         stalled_at: when that began [s].
@@ -82,7 +82,7 @@ def measure(
     first = min(round(criteria.settle / period), steps - 1)
     # A run that ends before it settled has no mean speeds.
     elapsed = (steps - 1 - first) * period or math.nan
-    axis = np.asarray(log["trajectory/lateral_axis"], dtype=float)[-round(1.0 / period) :]
+    axis = np.asarray(log["trajectory/trunk_axis"], dtype=float)[-round(1.0 / period) :]
     heading = np.degrees(np.arctan2(-axis[:, 0], axis[:, 1]))
     stall, stalled_at = longest_stall(direction * angle, criteria.stall_progress, period)
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, cross
+from rotctl.rotations import Array, advance, cross
 from rotctl.settings import STRICT, Range
 
 
@@ -57,17 +57,19 @@ def draw(settings: StartSettings, generator: np.random.Generator) -> Start:
     return Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
 
 
-def place(model: Model, data: mujoco.MjData, start: Start, pose: Array) -> None:
-    """Put the character into `pose` (nu,) [rad], its lowest point on the ground, moving.
+def place(model: Model, data: mujoco.MjData, start: Start, orientation: Array, pose: Array) -> None:
+    """Put the character on the ground, moving. On a slope, pitch and velocity are relative to it.
 
-    On a slope, pitch and velocity are relative to it.
+    Args:
+        orientation: (4,) of the pelvis before it is pitched, unit quaternion.
+        pose: (nu,) [rad].
     """
     mj = model.mj
     mujoco.mj_resetData(mj, data)
     data.qpos[7:] = pose
     slope = model.ground.slope
-    half = 0.5 * (start.pitch - slope)
-    data.qpos[3:7] = [np.cos(half), 0.0, np.sin(half), 0.0]
+    pitch = np.array([0.0, start.pitch - slope, 0.0])
+    data.qpos[3:7] = advance(orientation, pitch)
     mujoco.mj_kinematics(mj, data)
     data.qpos[2] -= _clearance(model, data)
     mujoco.mj_kinematics(mj, data)
