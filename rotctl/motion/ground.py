@@ -2,16 +2,22 @@
 
 import mujoco
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from rotctl.mechanics.model import Model
 from rotctl.motion.turning import Motion, qpos
 from rotctl.rotations import Array
 
 
-def rolled(model: Model, motion: Motion) -> Array:
-    """Generalised positions (n, nq) of a motion that rolls on what is lowest at each moment."""
+def rolled(model: Model, motion: Motion, heading: float = 0.0) -> Array:
+    """Generalised positions (n, nq) of a motion that rolls on what is lowest at each moment.
+
+    Args:
+        heading: where it goes, seen from above, from world +x [rad].
+    """
     mj = model.mj
-    data, positions = mujoco.MjData(mj), qpos(model, motion)
+    turned = Motion(motion.poses, Rotation.from_rotvec([0.0, 0.0, heading]) * motion.pelvis)
+    data, positions = mujoco.MjData(mj), qpos(model, turned)
     lowest, arm, body = np.zeros(3), np.zeros(3), 0
     for i, position in enumerate(positions):
         data.qpos[:] = position
