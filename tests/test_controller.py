@@ -161,7 +161,7 @@ def head_stand(world):
     return world.state(step), step
 
 
-def test_the_head_is_never_used(world, steps):
+def test_a_head_held_out_of_control_is_never_used(world, steps):
     head = world.mj.body("head").id
     state, step = head_stand(world)
     on_head = state.contacts.body == head
@@ -174,7 +174,7 @@ def test_the_head_is_never_used(world, steps):
         assert not step.decision.used[on_head].any()
 
 
-def test_a_contact_of_the_head_changes_nothing(world):
+def test_a_contact_held_out_of_control_changes_nothing(world):
     """Blind to it: the same torques as if it were not there."""
     state, step = head_stand(world)
     keep = state.contacts.body != world.mj.body("head").id

@@ -18,19 +18,27 @@ from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control import Desired
+from rotctl.errors import InputError
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionName
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.motion import Angle, make_pose_pair
+from rotctl.motion import (
+    Angle,
+    PosePair,
+    ReferencePair,
+    ReferenceSettings,
+    RollAbout,
+    load_clip,
+    make_pose_pair,
+    make_reference_pair,
+)
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
 ALONG = np.array([1.0, 0.0, 1.0])  # free along the way and up; the line of travel is y = 0
 UPRIGHT = np.zeros(3)  # phi_hat; in-plane it has no stiffness
-
-RollAbout = Literal["left", "right", "head"]
 
 
 @dataclass(frozen=True)
@@ -63,7 +71,7 @@ class Poses:
 
 @validated(frozen=True, config=STRICT)
 class RollingSettings:
-    """What Table 1 varies, and the two key poses.
+    """What Table 1 varies, and the poses: two key poses, or a reference motion.
 
     Attributes:
         angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
@@ -77,10 +85,15 @@ class RollingSettings:
     roll_about: RollAbout
     angular_velocity: Finite
     speed: Finite
-    poses: Poses
     align_with_slope: Annotated[bool, Strict()]
+    poses: Poses | None = None
+    reference: ReferenceSettings | None = None
     source: str = ""
     description: str = ""
+
+    def __post_init__(self) -> None:
+        if (self.poses is None) == (self.reference is None):
+            raise ValueError("give either poses or a reference, not both and not neither")
 
 
 class Rolling:
@@ -115,7 +128,7 @@ class Rolling:
         slope = model.ground.slope
         along = slope if settings.align_with_slope else 0.0
         self._velocity = settings.speed * np.array([np.cos(along), 0.0, np.sin(along)])
-        self._poses = make_pose_pair(model, settings.poses.a, settings.poses.b)
+        self._poses = _poses(settings, model)
 
     def pose(self, phase: float) -> Array:
         """The pose (nu,) [rad] a run starts in at that phase: r_a, the tuck."""
@@ -158,3 +171,17 @@ class Rolling:
             pose_a=pose_a,
             pose_b=pose_b,
         )
+
+
+def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:
+    if settings.poses:
+        return make_pose_pair(model, settings.poses.a, settings.poses.b)
+    assert settings.reference  # __post_init__
+    reference = settings.reference
+    clip = load_clip(reference.clip)
+    if clip.roll_about != settings.roll_about:
+        raise InputError(
+            f"behaviour.reference.clip={reference.clip}: rolls about {clip.roll_about}, "
+            f"but behaviour.roll_about={settings.roll_about}"
+        )
+    return make_reference_pair(model, clip, reference.window, reference.lead)
