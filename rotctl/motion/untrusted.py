@@ -2,6 +2,7 @@
 
 import os
 import re
+from math import isfinite
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -97,3 +98,21 @@ def _complaint(first: Any, fields: list[str]) -> str:
     if isinstance(value, str | int | float):
         where += f"={value!r:.60}"
     return f"{where}: {message}" if where else message
+
+
+def numbers(where: str, words: list[str], count: int) -> list[float]:
+    """Exactly `count` finite numbers.
+
+    Raises:
+        InputError: something else; `where` is the file and the line.
+    """
+    if len(words) != count:
+        raise InputError(f"{where}: {len(words)} values, {count} expected")
+    for word in words:
+        try:
+            good = isfinite(float(word))
+        except ValueError:
+            good = False
+        if not good:
+            raise InputError(f"{where}: {word!r:.40} is no number")
+    return [float(word) for word in words]
