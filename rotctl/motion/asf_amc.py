@@ -13,7 +13,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
-from rotctl.motion.capture import MAX_FRAMES, MAX_JOINTS, Y_UP_FACING_Z, Capture, assembled
+from rotctl.motion.capture import (
+    MAX_FRAMES,
+    MAX_JOINTS,
+    Y_UP_FACING_Z,
+    Capture,
+    assembled,
+    bounded,
+)
 from rotctl.motion.untrusted import numbers, text_of
 
 RATE = 120.0  # [Hz] what CMU's files are usually taken with
@@ -40,8 +47,9 @@ def read_amc(path: Path, skeleton: Path, rate: float = RATE) -> Capture:
     """
     bones, parents = _skeleton(skeleton)
     values = _frames(path, bones)
-    n = len(values[ROOT])
     root = values[ROOT]
+    n = len(root)
+    bounded(path, len(bones), n)
     local = {ROOT: Rotation.from_euler("xyz", root[:, 3:], degrees=True)}
     for name, bone in bones.items():
         angles = np.zeros((n, 3))

@@ -13,7 +13,14 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
-from rotctl.motion.capture import MAX_FRAMES, MAX_JOINTS, Y_UP_FACING_Z, Capture, assembled
+from rotctl.motion.capture import (
+    MAX_FRAMES,
+    MAX_JOINTS,
+    Y_UP_FACING_Z,
+    Capture,
+    assembled,
+    bounded,
+)
 from rotctl.motion.untrusted import numbers, text_of
 from rotctl.rotations import Array
 
@@ -40,6 +47,7 @@ def read_bvh(path: Path) -> Capture:
     start = next((i for i, line in enumerate(lines) if line.strip() == "MOTION"), len(lines))
     joints = _skeleton(path, lines[:start])
     time, values = _frames(path, lines, start, sum(len(joint.channels) for joint in joints))
+    bounded(path, len(joints), len(time))
     root, local, column = np.zeros((len(time), 3)), {}, 0
     for joint in joints:
         rotation = Rotation.identity(len(time))
@@ -64,14 +72,14 @@ def read_bvh(path: Path) -> Capture:
 def _skeleton(path: Path, lines: list[str]) -> list[_Joint]:
     words = ((i, word) for i, line in enumerate(lines, 1) for word in line.split())
     joints: dict[str, _Joint] = {}
-    open_joints: list[_Joint] = []  # an end site is open, but never among the joints
+    open_joints: list[_Joint] = []  # an end site has no name, and is not among the joints
     waiting: _Joint | None = None  # for its brace
     line = 0
     for line, word in words:
         where = f"{path}:{line}"
         if waiting is not None:
             if word != "{":
-                raise InputError(f"{where}: expected {{ after {waiting.name}, found {word!r:.40}")
+                raise InputError(f"{where}: expected {{, found {word!r:.40}")
             open_joints.append(waiting)
             waiting = None
         elif word in ("ROOT", "JOINT", "End"):
@@ -80,22 +88,25 @@ def _skeleton(path: Path, lines: list[str]) -> list[_Joint]:
                 raise InputError(
                     f"{where}: {word} {name:.40}: there must be one ROOT, first of all"
                 )
-            if word != "ROOT" and not open_joints:
-                raise InputError(f"{where}: {word} {name:.40} is outside of the root's braces")
-            waiting = _Joint(name, open_joints[-1].name if open_joints else "")
-            if word != "End":
-                if name in joints:
-                    raise InputError(f"{where}: there is a second joint {name!r:.40}")
-                joints[name] = waiting
-            if len(joints) > MAX_JOINTS:
-                raise InputError(f"{where}: more than {MAX_JOINTS} joints")
+            if word != "ROOT" and not (open_joints and open_joints[-1].name):
+                raise InputError(f"{where}: {word} {name:.40} is not in the braces of a joint")
+            parent = open_joints[-1].name if open_joints else ""
+            if word == "End":
+                waiting = _Joint("", parent)
+            elif name in joints or len(joints) == MAX_JOINTS:
+                raise InputError(
+                    f"{where}: {name:.40}: a joint needs a name of its own, and {MAX_JOINTS} are "
+                    "the most"
+                )
+            else:
+                waiting = joints[name] = _Joint(name, parent)
         elif word == "}" and open_joints:
             open_joints.pop()
         elif word == "OFFSET" and open_joints:
             open_joints[-1].offset = numbers(where, [w for _, w in _take(words, 3)], 3)
         elif word == "CHANNELS" and open_joints:
             open_joints[-1].channels = _channels(where, words)
-        elif (line, word) != (line, "HIERARCHY") or joints:
+        elif word != "HIERARCHY" or joints:
             raise InputError(f"{where}: {word!r:.40} makes no sense here")
     if waiting is not None or open_joints or not joints:
         raise InputError(f"{path}:{line}: the skeleton ends early")
@@ -136,5 +147,4 @@ def _frames(path: Path, lines: list[str], start: int, channels: int) -> tuple[Ar
             f"{path}:{start + 2}: Frames: {declared:g}, found {len(rows)}; valid: 2 to {MAX_FRAMES}"
         )
     values = [numbers(f"{path}:{i}", line.split(), channels) for i, line in rows]
-    time: Array = np.arange(len(rows)) * period
-    return time, np.array(values)
+    return np.arange(len(rows), dtype=np.float64) * np.float64(period), np.array(values)

@@ -1,14 +1,17 @@
 """What every motion file becomes: the joints of a captured body over time."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.errors import InputError
 from rotctl.rotations import Array
 
 MAX_JOINTS = 500
-MAX_FRAMES = 60_000
+MAX_FRAMES = 30_000
+MAX_POSES = 3_000_000  # joints times frames: memory for some hundred bytes each
 
 # Columns are the file's x, y, z in ours: x forward, y left, z up.
 Y_UP_FACING_Z = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -41,6 +44,18 @@ class Capture:
 
     time: Array
     joints: dict[str, Joint]
+
+
+def bounded(path: Path, joints: int, frames: int) -> None:
+    """Refuse what would not fit into memory.
+
+    Raises:
+        InputError: there are too many joints times frames.
+    """
+    if joints * frames > MAX_POSES:
+        raise InputError(
+            f"{path}: {joints} joints in {frames} frames, at most {MAX_POSES // joints} frames"
+        )
 
 
 def assembled(

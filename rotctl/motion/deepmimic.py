@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
 from rotctl.motion.capture import MAX_FRAMES, Y_UP_FACING_X, Capture, assembled
-from rotctl.motion.untrusted import text_of
+from rotctl.motion.untrusted import LARGEST, text_of
 from rotctl.rotations import Array
 
 # Joint: parent, offset from it [m], numbers in a row (4 a quaternion, 1 a hinge, 0 fixed).
@@ -84,7 +84,7 @@ def _rows(path: Path) -> Array:
             found = len(row) if isinstance(row, list) else 0
             raise InputError(f"{path}: frame {i}: {found} values, {_ROW} expected")
         for value in row:
-            if type(value) not in (int, float) or not abs(value) < 1e6:
+            if type(value) not in (int, float) or not abs(value) < LARGEST:
                 raise InputError(f"{path}: frame {i}: {value!r:.40} is no number")
         if i < len(rows) and not 1e-4 <= row[0] <= 1.0:
             raise InputError(f"{path}: frame {i}: lasts {row[0]:g} s, valid: 0.0001 to 1 s")

@@ -77,6 +77,8 @@ def read_capture(path: Path, skeleton: Path | None, rate: float | None) -> Captu
     Raises:
         InputError: one line that names the file and the line in it.
     """
+    if rate is not None and not 1.0 <= rate <= 10_000.0:
+        raise InputError(f"--rate={rate:g}: valid: 1 to 10000 Hz")
     ending = path.suffix.lower()
     if ending == ".bvh":
         capture = read_bvh(path)

@@ -24,9 +24,10 @@ _LIMBS = {
     "wrist": ("wrist", "hand"),
 }
 _BALL = ("toebase", "toes", "toe", "ball")
-_NECK = ("neck", "neck1", "lowerneck")
+_NECK = ("neck", "neck1", "lowerneck", "head")
 _HEAD = ("head", "neck")
-_PART = 0.02  # [legs] a joint nearer to the root than that says nothing on its direction
+PART_OF_SPINE = 0.02  # [legs] a joint nearer to the root says nothing on where it points
+PART_OF_CHEST = 0.15  # [legs] a joint nearer to the neck is a part of the neck
 
 
 @dataclass(frozen=True)
@@ -81,11 +82,12 @@ def find_landmarks(path: Path, capture: Capture) -> Landmarks:
         raise InputError(f"{path}: its legs have no length")
     head = find(_HEAD, "head")
     neck = find(_NECK, "neck")
-    root = next(iter(capture.joints.values()))
+    low, high = _spine(capture, neck, float(leg))
     points |= {
-        "hips": root.position,
+        "hips": next(iter(capture.joints.values())).position,
         "neck": neck.position,
-        "spine": _spine(capture, root, neck, float(leg)).position,
+        "spine": low.position,
+        "chest": high.position,
         "head": head.position,
         "crown": head.position + leg * head.rotation.apply([0.0, 0.0, 1.0]),
         "nose": head.position + leg * head.rotation.apply([1.0, 0.0, 0.0]),
@@ -106,15 +108,21 @@ def _length(points: dict[str, Array], side: str) -> float:
     return float(np.median(whole))
 
 
-def _spine(capture: Capture, root: Joint, neck: Joint, leg: float) -> Joint:
-    """The lowest joint of the spine that is not at the root itself."""
+def _spine(capture: Capture, neck: Joint, leg: float) -> tuple[Joint, Joint]:
+    """The lowest joint of the spine that is apart from the root, the highest from the neck."""
     chain, joint = [], neck
     while joint.parent:
         joint = capture.joints[joint.parent]
         chain.append(joint)
-    apart = [
-        joint
-        for joint in chain
-        if np.median(np.linalg.norm(joint.position - root.position, axis=1)) > _PART * leg
-    ]
-    return apart[-1] if apart else neck
+    if not chain:
+        return neck, neck
+
+    def apart(joint: Joint, other: Joint, least: float) -> bool:
+        return bool(
+            np.median(np.linalg.norm(joint.position - other.position, axis=1)) > least * leg
+        )
+
+    root = chain[-1]
+    low = next((joint for joint in chain[::-1] if apart(joint, root, PART_OF_SPINE)), neck)
+    high = next((joint for joint in chain if apart(joint, neck, PART_OF_CHEST)), root)
+    return low, high

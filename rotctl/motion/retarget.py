@@ -26,7 +26,7 @@ UP, LEFT, FORWARD, DOWN = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.
 _SEGMENTS = (
     ("pelvis", UP, "hips", "spine", 1.0),
     ("pelvis", LEFT, "hip_r", "hip_l", 2.0),
-    ("chest", UP, "spine", "neck", 1.0),
+    ("chest", UP, "chest", "neck", 1.0),
     ("chest", LEFT, "shoulder_r", "shoulder_l", 1.0),
     ("head", UP, "head", "crown", 0.5),
     ("head", FORWARD, "head", "nose", 0.5),
@@ -129,9 +129,12 @@ class _Fit:
         """Zero pose, the pelvis as the targets have it."""
         position = np.zeros(self.mj.nq)
         up, left = targets[0], targets[1]
-        forward = _unit(np.cross(left, up))
-        axes = np.stack([forward, left, np.cross(forward, left)], axis=1)
-        position[3:7] = Rotation.from_matrix(axes).as_quat(scalar_first=True)
+        forward = np.cross(left, up)
+        position[3] = 1.0
+        if np.linalg.norm(forward) > 0.1:  # else the file is no human's, and anything will do
+            forward = _unit(forward)
+            axes = np.stack([forward, left, np.cross(forward, left)], axis=1)
+            position[3:7] = Rotation.from_matrix(axes).as_quat(scalar_first=True)
         position[7:] = np.clip(0.0, self.low, self.high)
         return position
 
