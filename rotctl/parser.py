@@ -21,6 +21,7 @@ examples:
   rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
   rotctl plot runs/<run id>/run.h5 --out roll.pdf
   rotctl inspect runs/<run id>/run.h5             what is in a log
+  rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
 the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
@@ -54,6 +55,14 @@ def _folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")
     return Path(text)
+
+
+def _seconds(text: str) -> tuple[float, float]:
+    start, _, end = text.partition(":")
+    try:
+        return float(start), float(end)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: valid: START:END in seconds") from None
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -228,9 +237,69 @@ def _parser() -> argparse.ArgumentParser:
     tune.add_argument("--seed", type=int, default=0, metavar="S", help="of the search [0]")
     tune.set_defaults(command=commands.tune)
 
+    importing = chosen.add_parser(
+        "import-motion",
+        help="make a reference clip of captured motion",
+        description="Read a captured roll (BVH, ASF/AMC or DeepMimic), put it on one of our "
+        "characters, cut out one cycle and write it as a clip over the phase of the roll. Says "
+        "how well each segment follows, how fast the body turns and how well the loop closes.",
+    )
+    importing.add_argument("file", type=Path, metavar="FILE", help=".bvh, .amc, .txt or .json")
+    importing.add_argument(
+        "--cycle",
+        type=_seconds,
+        metavar="START:END",
+        help="of the roll [s] [the one that closes best]",
+    )
+    importing.add_argument(
+        "--skeleton", type=Path, metavar="FILE.asf", help="of an .amc [the .asf of its name]"
+    )
+    importing.add_argument("--rate", type=float, metavar="HZ", help="frame rate [the file's]")
+    importing.add_argument(
+        "--symmetric", action="store_true", help="the mean of the roll and its mirror image"
+    )
+    importing.add_argument("--licence", default="", metavar="TEXT", help="the source's terms")
+    importing.set_defaults(command=commands.import_motion)
+
+    authoring = chosen.add_parser(
+        "author-motion",
+        help="make a reference clip of key poses",
+        description="Make a clip of the key poses of one cycle, as in conf/motion/keys/: smooth "
+        "between them, its phase linear in how far the body has turned.",
+    )
+    authoring.add_argument("file", type=Path, metavar="KEYS.yaml")
+    authoring.set_defaults(command=commands.author_motion)
+
+    for command in (importing, authoring):
+        command.add_argument(
+            "--out", type=_folder, required=True, metavar="CLIP.yaml", help="the clip"
+        )
+        command.add_argument(
+            "--filmstrip", action="store_true", help="also draw CLIP.png beside it"
+        )
+
+    preview = chosen.add_parser(
+        "preview-motion",
+        help="draw a reference clip",
+        description="Draw one cycle of a clip as it rolls over the ground; nothing is simulated.",
+    )
+    preview.add_argument("clip", metavar="CLIP", help="a name in conf/motion/, or a .yaml file")
+    preview.add_argument("--out", type=Path, required=True, metavar="OUT.png")
+    preview.add_argument(
+        "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
+    )
+    preview.set_defaults(command=commands.preview_motion)
+
+    for command in (importing, authoring, preview):
+        command.add_argument(
+            "--character", default="adult", metavar="NAME", help="whose joints [%(default)s]"
+        )
+
     for command in chosen.choices.values():
         command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
-    for command in (render, replay, plot):
+    for command in (importing, authoring):
+        command.set_defaults(interrupted="an unfinished clip is not written")
+    for command in (render, replay, plot, preview):
         command.set_defaults(interrupted="an unfinished picture is not written")
     for command in (sweep, tune):
         command.set_defaults(interrupted="the same command does what is left")

@@ -34,12 +34,25 @@ def rolled(model: Model, motion: Motion, heading: float = 0.0) -> Array:
     return positions
 
 
-def clearance(model: Model, position: Array) -> float:
-    """How far the lowest point of a posture (nq,) is above z = 0 [m]."""
-    data = mujoco.MjData(model.mj)
-    data.qpos[:] = position
-    mujoco.mj_kinematics(model.mj, data)
-    return float(_lowest_point(model, data)[1][2])
+def heights(model: Model, positions: Array) -> Array:
+    """How far the lowest point of each posture (n, nq) is above z = 0 (n,) [m]."""
+    data, found = mujoco.MjData(model.mj), []
+    for position in positions:
+        data.qpos[:] = position
+        mujoco.mj_kinematics(model.mj, data)
+        found.append(_lowest_point(model, data)[1][2])
+    return np.array(found)
+
+
+def centres(model: Model, positions: Array) -> Array:
+    """The centre of mass of each posture (n, nq): (n, 3) [m]."""
+    data, found = mujoco.MjData(model.mj), []
+    for position in positions:
+        data.qpos[:] = position
+        mujoco.mj_kinematics(model.mj, data)
+        mujoco.mj_comPos(model.mj, data)
+        found.append(data.subtree_com[1].copy())
+    return np.array(found)
 
 
 def _lowest_point(model: Model, data: mujoco.MjData) -> tuple[int, Array]:

@@ -10,9 +10,10 @@ from pydantic import TypeAdapter, ValidationError
 
 from rotctl.errors import InputError
 
-MAX_BYTES = 64_000_000  # an hour of text capture at 120 Hz is not one cycle
+MAX_BYTES = 32_000_000  # minutes of capture
 MAX_YAML_BYTES = 2_000_000
 MAX_DEPTH = 8
+LARGEST = 1e6  # no angle and no length in any unit is as large
 # C's parser is five times faster; it may be missing, and both read the same.
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
@@ -97,3 +98,21 @@ def _complaint(first: Any, fields: list[str]) -> str:
     if isinstance(value, str | int | float):
         where += f"={value!r:.60}"
     return f"{where}: {message}" if where else message
+
+
+def numbers(where: str, words: list[str], count: int) -> list[float]:
+    """Exactly `count` numbers.
+
+    Raises:
+        InputError: something else; `where` is the file and the line.
+    """
+    if len(words) != count:
+        raise InputError(f"{where}: {len(words)} values, {count} expected")
+    for word in words:
+        try:
+            good = abs(float(word)) < LARGEST  # not so for nan
+        except ValueError:
+            good = False
+        if not good:
+            raise InputError(f"{where}: {word!r:.40} is no number")
+    return [float(word) for word in words]
