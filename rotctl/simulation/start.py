@@ -8,7 +8,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import Model, is_character
 from rotctl.rotations import Array, advance, cross
 from rotctl.settings import STRICT, Finite, NonNegative, Range
 
@@ -126,7 +126,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, orientation: Array, p
     """
     mj = model.mj
     mujoco.mj_resetData(mj, data)
-    data.qpos[7:] = pose if start.pose is None else start.pose
+    data.qpos[model.angles] = pose if start.pose is None else start.pose
     slope = model.ground.slope
     pitch = np.array([0.0, start.pitch - slope, 0.0])
     data.qpos[3:7] = advance(orientation, pitch)
@@ -145,7 +145,7 @@ def _clearance(model: Model, data: mujoco.MjData) -> float:
     """How far the character can be lowered before it touches the ground [m]."""
     mj, ground = model.mj, model.ground
     least = np.inf
-    for geom in np.flatnonzero((mj.geom_bodyid > 0) & (mj.geom_contype > 0)):
+    for geom in np.flatnonzero(is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)):
         capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
         half = mj.geom_size[geom, 1] * capsule * data.geom_xmat[geom].reshape(3, 3)[:, 2]
         for x, y, z in (data.geom_xpos[geom] + half, data.geom_xpos[geom] - half):
