@@ -212,6 +212,7 @@ def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) 
         "heading_error_end": metrics.heading_error_end,
         "lateral_drift": metrics.lateral_drift,
         "longest_stall": metrics.longest_stall,
+        "airborne": metrics.airborne,
         "torque_p99_fraction": metrics.torque_p99_fraction,
         "solver_failures": metrics.solver_failures,
         "real_time_factor": metrics.duration / wall,

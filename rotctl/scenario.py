@@ -55,7 +55,12 @@ def build(config: Config) -> Scenario:
         ),
         controller=Controller(model, control),
         stepper=MujocoStepper(model, config.physics.substeps),
-        start=starts.draw(config.start, np.random.default_rng(config.seed)),
+        start=starts.draw(
+            config.start,
+            model,
+            config.behaviour.roll_about,
+            np.random.default_rng(config.seed),
+        ),
         run_id=run_id(config, model),
     )
 

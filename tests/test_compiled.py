@@ -56,10 +56,12 @@ def along_a_roll(overrides, steps):
         ["seed=2", "controller.supervisor=none"],
         ["seed=3", "controller.supervisor=modified"],
         ["seed=4", "behaviour=forward_roll_1_phase", "controller.weights.contact_velocity=0"],
+        ["seed=5", "controller=root"],
+        ["seed=3", "behaviour=terrain_roll", "terrain=hazards"],
     ],
 )
 def test_same_torques_and_contacts_as_the_reference(overrides):
-    """300 states each: 1200 in all."""
+    """300 states each: 1800 in all."""
     dropped = limited = 0
     for expected, found, slow, fast in along_a_roll(overrides, 300):
         scale = np.abs(slow.torque).max()

@@ -120,7 +120,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
         (["seed=1,-2"], "seed=-2: must be greater than or equal to 0"),
         (["seed=1", "--retries", "-1"], "--retries=-1: must be at least 0"),
         (["seed=1", "--jobs", "0"], "--jobs=0: must be at least 1"),
-        (["+experiment=no"], "+experiment=no: no such experiment; valid: forward_roll_1"),
+        (["+experiment=no"], "+experiment=no: no such experiment; valid: contrasts, "),
     ]:
         code, stdout, stderr = cli("sweep", *arguments, "--out", out)
         assert (code, stdout) == (2, "")

@@ -36,7 +36,10 @@ def test_further_overrides_replace_its_own():
 @pytest.mark.parametrize(
     ("overrides", "message"),
     [
-        (["+experiment=no"], "+experiment=no: no such experiment; valid: forward_roll_1"),
+        (
+            ["+experiment=no"],
+            "+experiment=no: no such experiment; valid: contrasts, forward_roll_1",
+        ),
         (
             ["+experiment=forward_roll_1", "+experiment=b"],
             "+experiment=b: one experiment a sweep",

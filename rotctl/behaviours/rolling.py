@@ -6,7 +6,10 @@ A character rolls to +x, about +y. Which of the trunk's axes it keeps there make
 In-plane (about the rolling axis y, along the rolling direction x) the angular velocity and
 the speed are held constant and their integrals are left free; out of plane, AE and AV are
 held at zero and the lateral and vertical velocities are damped. All of that is gains: a
-zero in-plane stiffness leaves the excursion and the distance free.
+zero in-plane stiffness leaves the excursion and the distance free. The in-plane excursion
+that is wanted runs ahead at the commanded rate all the same; with a stiffness it is tracked,
+which the paper shows to fail. ROOT control, which fails too, compares the root's orientation
+and angular velocity with what is wanted of the whole body's.
 """
 
 import math
@@ -38,7 +41,6 @@ from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
 ALONG = np.array([1.0, 0.0, 1.0])  # free along the way and up; the line of travel is y = 0
-UPRIGHT = np.zeros(3)  # phi_hat; in-plane it has no stiffness
 
 
 @dataclass(frozen=True)
@@ -144,7 +146,7 @@ class Rolling:
 
     def advance(self, before: Excursion, state: State) -> Excursion:
         """Excursion now, from that of the previous control step."""
-        return excursion.integrate(
+        now = excursion.integrate(
             before,
             state.momentum.angular_velocity,
             self.trunk_axis(state),
@@ -152,6 +154,9 @@ class Rolling:
             self._period,
             self._correction_time,
         )
+        if self._name == "root":
+            return excursion.on_root(now, state.position[3:7], self.orientation)
+        return now
 
     def phase(self, now: Excursion) -> float:
         """Phase theta [rad], turned from upright, or from lying on the back in a log roll.
@@ -163,11 +168,15 @@ class Rolling:
     def desired(self, state: State, now: Excursion) -> Desired:
         """What rolling wants at this instant."""
         pose_a, pose_b = self._poses.at(self.phase(now))
+        target = self._angular_velocity * state.time  # phi_hat
+        velocity = self._angular_velocity
+        if self._name == "root":  # AV that is off by as much as the root's velocity is
+            velocity = velocity + state.momentum.angular_velocity - state.root_angular_velocity
         return Desired(
             com=ALONG * state.momentum.com,
             com_velocity=self._velocity,
-            excursion_error=excursion.error(now, UPRIGHT, ROLLING_AXIS, self._name),
-            angular_velocity=self._angular_velocity,
+            excursion_error=excursion.error(now, target, ROLLING_AXIS, self._name),
+            angular_velocity=velocity,
             pose_a=pose_a,
             pose_b=pose_b,
         )

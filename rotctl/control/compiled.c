@@ -12,7 +12,7 @@
 
 #include <mujoco/mujoco.h>
 
-enum { CONTACTS = 64, ROWS = 3 * CONTACTS, ROOT = 6 };
+enum { CONTACTS = 64, ROWS = 3 * CONTACTS, ROOT = 6, DOFS = 256 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
 
 // MuJoCo's functions, found by Python in the library that it has loaded already.
@@ -80,6 +80,9 @@ typedef struct {
   double *t1, *t2;
 } Self;
 
+// Whether a body is the character's: it is the first tree, loose things on the ground follow.
+static int own(const mjModel* m, int body) { return m->body_rootid[body] == 1; }
+
 static double dot(const double* a, const double* b, int n) {
   double sum = 0;
   for (int i = 0; i < n; i++) sum += a[i] * b[i];
@@ -123,7 +126,7 @@ int rotctl_mujoco_version(void) { return mjVERSION_HEADER; }
 
 // Sizes that the Python side must share, so that a library built from other source is refused.
 int rotctl_layout(void) {
-  return sizeof(Constants) + 7 * sizeof(Reading) + 49 * sizeof(Wishes) + 343 * sizeof(Answer);
+  return 2 * sizeof(Constants) + 7 * sizeof(Reading) + 49 * sizeof(Wishes) + 343 * sizeof(Answer);
 }
 
 void rotctl_free(Self* s) {
@@ -137,7 +140,7 @@ void rotctl_free(Self* s) {
 Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const Constants* c) {
   Self* s = calloc(1, sizeof(Self));
   if (!s) return 0;
-  int nv = m->nv, nu = nv - ROOT, n = nu + 4 * CONTACTS + 1;
+  int nv = m->nv, nu = m->nu, n = nu + 4 * CONTACTS + 1;
   s->m = m, s->scratch = scratch, s->mj = *mj, s->c = *c, s->nv = nv, s->nu = nu;
   struct {
     double** p;
@@ -161,8 +164,8 @@ Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const C
 int rotctl_read(Self* s, mjData* d, Reading* r) {
   const mjModel* m = s->m;
   int nv = s->nv;
-  double p[128], about[3];
-  if (nv > 128) return FAILED;
+  double p[DOFS], about[3];
+  if (nv > DOFS) return FAILED;
   s->mj.mulM(m, d, p, d->qvel);
   memcpy(r->rotation, d->xmat + 9, sizeof r->rotation);
   memcpy(r->com, d->subtree_com + 3, sizeof r->com);
@@ -202,11 +205,11 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
   for (int i = 0; i < d->ncon; i++) {
     const mjContact* k = d->contact + i;
     int first = m->geom_bodyid[k->geom[0]], second = m->geom_bodyid[k->geom[1]];
-    if ((first && second) || k->efc_address < 0) continue;
+    if (own(m, first) == own(m, second) || k->efc_address < 0) continue;
     if (r->count == CONTACTS) return FAILED;
     int j = r->count++;
-    double sign = first ? -1 : 1;
-    r->body[j] = first > second ? first : second;
+    double sign = own(m, first) ? -1 : 1;
+    r->body[j] = own(m, first) ? first : second;
     r->row[j] = k->efc_address;
     memcpy(r->position[j], k->pos, sizeof r->position[j]);
     for (int a = 0; a < 9; a++) r->frame[j][a] = sign * k->frame[a];
@@ -220,7 +223,7 @@ static void pose_torques(Self* s, mjData* d, const Wishes* w) {
   const mjModel* m = s->m;
   const Constants* c = &s->c;
   int nu = s->nu, nv = s->nv;
-  double h = c->period, force[2 * 128], acceleration[2 * 128];
+  double h = c->period, force[2 * DOFS] = {0}, acceleration[2 * DOFS];
   memcpy(s->scratch->M, d->M, sizeof(mjtNum) * m->nC);
   for (int i = 0; i < nu; i++) {
     int v = i + ROOT;
@@ -433,6 +436,8 @@ static void collect(Self* s, mjData* d, const Reading* r, const int* contact, in
   int nv = s->nv, n = 3 * k;
   for (int i = 0; i < k; i++)
     memcpy(s->jacobian + 3 * i * nv, d->efc_J + r->row[contact[i]] * nv, sizeof(double) * 3 * nv);
+  for (int v = ROOT + s->nu; v < nv; v++)  // of loose things
+    for (int i = 0; i < n; i++) s->jacobian[i * nv + v] = 0;
   memcpy(s->jacobian + n * nv, s->bias, sizeof(double) * nv);
   s->mj.solveM(s->m, d, s->solved, s->jacobian, n + 1);
   const double* fall = s->solved + n * nv;

@@ -119,7 +119,7 @@ def library() -> ctypes.CDLL | None:
         layout = found.rotctl_layout()
     except (OSError, AttributeError):
         return None
-    ours = (_Constants, 1), (_Reading, 7), (_Wishes, 49), (_Answer, 343)
+    ours = (_Constants, 2), (_Reading, 7), (_Wishes, 49), (_Answer, 343)
     if layout != sum(factor * ctypes.sizeof(structure) for structure, factor in ours):
         return None
     found.rotctl_new.restype = _pointer

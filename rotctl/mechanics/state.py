@@ -42,6 +42,11 @@ class State:
         """
         return np.asarray(self.data.qfrc_bias - self.data.qfrc_passive)
 
+    @property
+    def root_angular_velocity(self) -> Array:
+        """Of the root body (3,) [rad/s], world axes."""
+        return np.asarray(self.momentum.root_rotation @ self.velocity[3:6])
+
     def solve_mass(self, mj: mujoco.MjModel, rows: Array) -> Array:
         """Rows of right-hand sides (k, nv) to rows of M^-1 rhs (k, nv)."""
         solved = np.empty_like(rows)
