@@ -133,8 +133,8 @@ class Rolling:
         self._poses = _poses(settings, model)
 
     def pose(self, phase: float) -> Array:
-        """The pose (nu,) [rad] a run starts in at that phase: r_a, the tuck."""
-        return self._poses.at(phase)[0]  # the start's pitch is relative to the slope
+        """The pose (nu,) [rad] a run starts in at that phase."""
+        return self._poses.start(phase)  # the start's pitch is relative to the slope
 
     def begin(self, phase: float) -> Excursion:
         """Excursion at the start: phi_0 is the pelvis's pitch against the slope."""

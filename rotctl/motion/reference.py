@@ -41,11 +41,17 @@ class ReferencePair:
     """The two poses over the phase.
 
     Attributes:
+        cycle: (n, nu) the clip at even phases [rad].
         table: (STEPS + 1, 2, nu) r_a and r_b at even phases of one cycle [rad]; the last
             row is the first.
     """
 
+    cycle: Array
     table: Array
+
+    def start(self, phase: float) -> Array:
+        """The pose (nu,) [rad] to begin in at a phase [rad]: the clip's own."""
+        return np.asarray(periodic(self.cycle, np.array([phase / tau]))[0])
 
     def at(self, phase: float) -> Array:
         """Both poses (2, nu) [rad] at a phase [rad], between the two nearest rows."""
@@ -68,7 +74,8 @@ def make_reference_pair(model: Model, clip: Clip, window: float, lead: float) ->
     phases = np.linspace(0.0, 1.0, STEPS + 1)
     poses = clip.poses(model)
     return ReferencePair(
-        np.stack([periodic(poses, phases + lead + side * window) for side in (1.0, -1.0)], axis=1)
+        poses,
+        np.stack([periodic(poses, phases + lead + side * window) for side in (1.0, -1.0)], axis=1),
     )
 
 
