@@ -16,7 +16,8 @@ def run(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.config import load
-    from rotctl.run import LOG_NAME, run
+    from rotctl.log import LOG_NAME
+    from rotctl.run import run
 
     config = load(arguments.overrides)
     steps = round(config.duration * config.controller.rate)
@@ -174,8 +175,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
+    from rotctl.results import experiments
     from rotctl.sweep.engines import make_engine
-    from rotctl.sweep.experiments import matrix
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
@@ -185,12 +186,14 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
-    runs = planned(points(matrix(arguments.overrides)))
+    runs = planned(points(experiments.matrix(arguments.overrides)))
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         if arguments.dry_run:
             print(without_running(runs, arguments.out, engine.workers))
             return 0
         with locked(arguments.out):
+            if experiment := experiments.named(arguments.overrides):
+                experiments.copy_into(arguments.out, experiment)
             watched = None if not arguments.quiet else True  # None: only on a terminal
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as bar:
                 there = plan(runs, arguments.out, arguments.strict, bar.update)
@@ -207,8 +210,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
 def summarise(arguments: argparse.Namespace) -> int:
     """Make tables of the runs below a folder."""
-    from rotctl.sweep.groups import grouped, markdown, written
-    from rotctl.sweep.table import table
+    from rotctl.results.groups import grouped, markdown, written
+    from rotctl.results.table import table
 
     found = table(arguments.folder)
     groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)

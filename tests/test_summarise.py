@@ -14,11 +14,12 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
+from rotctl.metrics.rates import wilson
+from rotctl.results.found import found
+from rotctl.results.groups import grouped, markdown
+from rotctl.results.manifest import Entry, read, write
+from rotctl.results.table import Table, table
 from rotctl.run import make, run
-from rotctl.sweep.found import found
-from rotctl.sweep.groups import grouped, markdown, wilson
-from rotctl.sweep.manifest import Entry, read, write
-from rotctl.sweep.table import Table, table
 
 ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=0.5"]
 

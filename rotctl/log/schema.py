@@ -13,6 +13,7 @@ import numpy as np
 
 from rotctl.errors import LogError
 
+LOG_NAME = "run.h5"  # in a folder that the run id names
 SCHEMA_VERSION = 1
 
 MODEL_PATH = "model/mjcf"

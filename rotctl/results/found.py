@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from rotctl.errors import InputError, LogError
-from rotctl.log import read_attributes
-from rotctl.run import LOG_NAME
-from rotctl.sweep.code import code_version
-from rotctl.sweep.manifest import MANIFEST_NAME, Entry, read
+from rotctl.log import LOG_NAME, read_attributes
+from rotctl.results.code import code_version
+from rotctl.results.manifest import MANIFEST_NAME, Entry, read
 
+ORIGIN = ("machine", "versions", "git_commit", "git_dirty", "wall_time")
 DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
 
 
@@ -31,6 +31,7 @@ class Found:
         log: its log, relative to the folder.
         config: its config, as YAML.
         values: what the sweep says of its config, if a sweep made it.
+        origin: the log's `machine`, `versions`, `git_commit`, `git_dirty` and `wall_time`.
     """
 
     run_id: str
@@ -41,6 +42,7 @@ class Found:
     log: str = ""
     config: str = ""
     values: Mapping[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
 
 def found(folder: Path) -> tuple[list[Found], list[str]]:
@@ -85,6 +87,7 @@ def _logged(path: Path, log: str) -> Found:
             code=code_version(attributes),
             log=log,
             config=str(attributes["config"]),
+            origin={name: attributes[name] for name in ORIGIN},
         )
     except (LogError, ValueError, RecursionError) as error:
         return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)

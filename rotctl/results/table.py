@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,8 +11,8 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from rotctl.sweep.found import DAMAGED, FAILED, MISSING, Found, found
-from rotctl.sweep.points import value_at
+from rotctl.results.found import DAMAGED, FAILED, MISSING, Found, found
+from rotctl.results.keys import value_at
 
 SUMMARY_TEXT = ("run_id", "behaviour", "seed", "success", "failure_reason")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -42,7 +42,11 @@ def table(folder: Path) -> Table:
     Raises:
         InputError: there is no such folder, or no run in it.
     """
-    runs, notes = found(folder)
+    return tabulated(*found(folder))
+
+
+def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
+    """Runs that were found, in the order of their keys."""
     configs = {run.run_id: _config(run.config) for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
     keys += [key for key in _differing(configs.values()) if key not in keys]

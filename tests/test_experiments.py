@@ -3,7 +3,7 @@
 import pytest
 
 from rotctl.errors import InputError
-from rotctl.sweep.experiments import experiment, matrix, names
+from rotctl.results.experiments import experiment, matrix, names
 from rotctl.sweep.points import points
 
 
@@ -60,7 +60,7 @@ def test_what_is_wrong_is_said(overrides, message):
 )
 def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):
     (tmp_path / "wrong.yaml").write_text(text)
-    monkeypatch.setattr("rotctl.sweep.experiments.shipped", lambda name: tmp_path)
+    monkeypatch.setattr("rotctl.results.experiments.shipped", lambda name: tmp_path)
     with pytest.raises(InputError) as error:
         experiment("wrong")
     assert str(error.value).startswith(f"{tmp_path / 'wrong.yaml'}: ")
