@@ -223,6 +223,30 @@ def summarise(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def report(arguments: argparse.Namespace) -> int:
+    """Make the pages on many runs, and compare their claims with those of an earlier report."""
+    from tqdm import tqdm
+
+    from rotctl.report.site import against
+    from rotctl.report.site.build import report
+
+    # Before it is replaced, should it be the same folder.
+    old = against.read(arguments.against) if arguments.against else None
+    with tqdm(desc="report", unit="part", leave=False, disable=None, delay=0.2) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        claims = report(arguments.folder, arguments.out, progress)
+    print(arguments.out / "index.html")
+    if old is None:
+        return 0
+    found = against.changes(old, claims)
+    print(found.text)
+    return 1 if found.worse else 0
+
+
 def tune(arguments: argparse.Namespace) -> int:
     """Search for config values."""
     from contextlib import closing

@@ -15,6 +15,7 @@ examples:
   rotctl run controller.weights.angular_momentum=8
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
+  rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen
   rotctl show behaviour=forward_roll_1            the whole config, with these choices
   rotctl replay runs/<run id>/run.h5              a page that plays it in the browser
@@ -208,6 +209,26 @@ def _parser() -> argparse.ArgumentParser:
     )
     summarise.set_defaults(command=commands.summarise)
 
+    report = chosen.add_parser(
+        "report",
+        help="pages on many runs: claims with verdicts, pictures, replays",
+        description="Make a static folder of pages out of the runs below DIR, a sweep or several: "
+        "the claims of their experiments with verdicts, pictures and replays of the median and "
+        "the worst run of each row, charts, and where it all comes from. Also claims.csv, "
+        "junit.xml and summary.md. Nothing is simulated again.",
+    )
+    report.add_argument("folder", type=Path, metavar="DIR")
+    report.add_argument(
+        "--out", type=_folder, default=Path("site"), help="folder for the pages [%(default)s]"
+    )
+    report.add_argument(
+        "--against",
+        type=Path,
+        metavar="OLD",
+        help="an earlier report: print which verdicts changed, exit 1 if one got worse",
+    )
+    report.set_defaults(command=commands.report)
+
     tune = chosen.add_parser(
         "tune",
         help="search for poses or gains over many starts",
@@ -230,7 +251,7 @@ def _parser() -> argparse.ArgumentParser:
 
     for command in chosen.choices.values():
         command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
-    for command in (render, replay, plot):
+    for command in (render, replay, plot, report):
         command.set_defaults(interrupted="an unfinished picture is not written")
     for command in (sweep, tune):
         command.set_defaults(interrupted="the same command does what is left")

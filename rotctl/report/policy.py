@@ -1,4 +1,4 @@
-"""Content-Security-Policies: what a page may run and load, and nothing else, whatever a log says."""
+"""Content-Security-Policies: what a page may run and load, whatever a log says; little else."""
 
 from base64 import b64encode
 from hashlib import sha256

@@ -47,7 +47,7 @@ def table(folder: Path) -> Table:
 
 def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
     """Runs that were found, in the order of their keys."""
-    configs = {run.run_id: _config(run.config) for run in runs if run.config}
+    configs = {run.run_id: config_of(run.config) for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
     keys += [key for key in _differing(configs.values()) if key not in keys]
     keys = [*(key for key in keys if key != "seed"), "seed"]
@@ -86,12 +86,17 @@ def _missing(runs: Iterable[Found]) -> list[str]:
     return notes
 
 
-def _config(text: str) -> dict[str, Any]:
+def config_of(text: str) -> dict[str, Any]:
     """The config of a log; runs differ mostly in their seed, so the rest is parsed once."""
     seed = _SEED.search(text)
     if not seed:
         return _parsed(text)
-    return {**_parsed(_SEED.sub("", text)), "seed": int(seed[1])}
+    return {**_parsed(without_seed(text)), "seed": int(seed[1])}
+
+
+def without_seed(text: str) -> str:
+    """The config of a log less the line with its seed."""
+    return _SEED.sub("", text)
 
 
 @cache
