@@ -24,7 +24,8 @@ examples:
   rotctl inspect runs/<run id>/run.h5             what is in a log
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
+the solver broke down, a run of a sweep could not be run, or a claim got worse (rotctl report
+--against), 2 bad input, 130 interrupted
 """
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
