@@ -13,13 +13,13 @@ import numpy as np
 
 from rotctl.errors import LogError
 
-LOG_NAME = "run.h5"  # in a folder that the run id names
 SCHEMA_VERSION = 1
 
 MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
 MAX_MODEL_BYTES = 16 * 2**20
 MAX_TOTAL_BYTES = 2 * 2**30
+LOG_NAME = "run.h5"  # in a folder that the run id names
 
 
 @dataclass(frozen=True)
