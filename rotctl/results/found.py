@@ -16,6 +16,7 @@ from rotctl.results.code import code_version
 from rotctl.results.manifest import MANIFEST_NAME, Entry, read
 
 ORIGIN = ("machine", "versions", "git_commit", "git_dirty", "wall_time")
+LARGE = 1e300  # no number in a summary is, and none is infinite
 DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
 
 
@@ -77,20 +78,36 @@ def found(folder: Path) -> tuple[list[Found], list[str]]:
 def _logged(path: Path, log: str) -> Found:
     try:
         attributes = read_attributes(path)
-        outcome = json.loads(str(attributes["outcome"]))
-        if not isinstance(outcome, dict):
-            raise LogError("outcome is not a JSON object")
         return Found(
             str(attributes["run_id"]),
             DONE,
-            outcome=outcome,
+            outcome=_summary(str(attributes["outcome"])),
             code=code_version(attributes),
             log=log,
             config=str(attributes["config"]),
             origin={name: attributes[name] for name in ORIGIN},
         )
-    except (LogError, ValueError, RecursionError) as error:
+    except LogError as error:
         return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
+
+
+def _summary(text: str) -> dict[str, Any]:
+    """The outcome of a log.
+
+    Raises:
+        LogError: it is not what rotctl writes.
+    """
+    try:
+        outcome = json.loads(text)
+    except (ValueError, RecursionError):
+        raise LogError("outcome is not JSON") from None
+    if not isinstance(outcome, dict) or not isinstance(outcome.get("success"), bool):
+        raise LogError("outcome does not say whether it is a success")
+    for name, value in outcome.items():
+        number = isinstance(value, int | float) and abs(value) < LARGE
+        if not (number or value is None or isinstance(value, str)):
+            raise LogError(f"outcome has no plain value for {name!r:.60}")
+    return outcome
 
 
 def _unlogged(entry: Entry) -> Found:

@@ -84,7 +84,7 @@ def _measured(group: pd.DataFrame, metrics: list[str]) -> dict[str, object]:
         "no_result": len(group) - n,
     }
     for metric in metrics:
-        values = pd.to_numeric(done[metric], errors="coerce")
+        values = pd.to_numeric(done[metric], errors="coerce").astype(float)
         for name, share in QUARTILES.items():
             row[f"{metric}_{name}"] = values.quantile(share)
     return row

@@ -37,7 +37,8 @@ def grid(table: Table) -> Grid:
     found = grouped(table)
     keys = telling(found)
     groups = found.rows.assign(label=labels(found.rows, keys))
-    runs = table.rows.assign(label=labels(table.rows, keys))
+    seeds = pd.to_numeric(table.rows["seed"], errors="coerce")  # a stranger's may be words
+    runs = table.rows.assign(label=labels(table.rows, keys), seed=seeds)
     axes = [key for key in keys if _is_axis(groups[key])]
     return Grid(groups, runs, axes, [key for key in keys if key not in axes], found.notes)
 

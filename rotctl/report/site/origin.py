@@ -1,6 +1,7 @@
 """Where results come from: machines, versions, code, configs, seeds, and what they cost."""
 
 import json
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
@@ -76,7 +77,7 @@ def _pairs(text: Any) -> str:
 
 
 def _numbers(found: Iterable[Any]) -> list[float]:
-    return [float(v) for v in found if isinstance(v, int | float) and np.isfinite(v)]
+    return [float(v) for v in found if isinstance(v, int | float) and math.isfinite(v)]
 
 
 def _sum(found: Iterable[Any]) -> float:
