@@ -32,7 +32,7 @@ from rotctl.rotations import Array
 MAX_FRAMES = 200
 FRAME = (320, 250)  # pixels
 OVERSAMPLING = 2  # frames are drawn this much larger: smooth edges without multisampling
-DEFAULT_COLUMNS = 6
+MAX_COLUMNS = 6
 SETTLED = 2.0  # [s] by default the strip starts here
 DEFAULT_TURNS = 2.0  # [rev] and lasts so long
 SMALL = 1_500_000  # [bytes] a larger picture is reduced to 256 colours
@@ -66,12 +66,13 @@ def filmstrip(
     """
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames is {frames}, valid: 1 to {MAX_FRAMES}")
-    columns = min(DEFAULT_COLUMNS, frames) if columns is None else columns
+    columns = min(MAX_COLUMNS, frames) if columns is None else columns
     if not 1 <= columns <= frames:
         raise InputError(f"columns is {columns}, valid: 1 to {frames}, the number of frames")
     rows = _rows(log, frames, start, end)
     pictures, shown = _drawn(log, rows, FRAME)
-    _write(out, _sheet(log, pictures, shown, columns))
+    sheet = _sheet(log, pictures, shown, columns)
+    write(out, sheet)
 
 
 def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
@@ -175,7 +176,7 @@ def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float) -> None:
     pen.text((right, y), "left limbs are darker", SOFT, font, anchor="ra")
 
 
-def _write(out: Path, sheet: Image.Image) -> None:
+def write(out: Path, sheet: Image.Image) -> None:
     """Replace `out` by a PNG in one step."""
     packed = _png(sheet)
     if len(packed) > SMALL:
