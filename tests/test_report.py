@@ -15,7 +15,7 @@ from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report.site import against, build
 from rotctl.report.site.build import report
-from rotctl.report.site.words import Names, kind, ranges
+from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.sweeps import sweeps
 
@@ -365,6 +365,20 @@ def test_a_folder_that_cannot_be_written_is_one_line(sweep, tmp_path, capsys):
 )
 def test_reasons_without_their_numbers(reason, expected):
     assert kind(reason) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (0.7061, "0.706"),
+        (-0.0001, "0"),
+        (-3.756, "\u22123.76"),
+        (12345.6, "12346"),
+        (None, "\u2013"),
+    ],
+)
+def test_numbers_have_three_digits(value, expected):
+    assert number(value) == expected
 
 
 def test_names_of_files_are_plain_and_given_once():

@@ -28,12 +28,13 @@ def quantity(metric: str) -> str:
 
 
 def number(value: float | None, metric: str = "") -> str:
-    """A number to three digits in the unit of its metric, the unit left out; rates in percent."""
+    """A number to three digits, at most three decimals, without its unit; rates in percent."""
     if value is None or value != value:
         return NOTHING
     if metric == SUCCESS_RATE:
         return f"{100 * value:.0f}"
-    return f"{value:.3g}".replace("-", "\u2212") if abs(value) < 1000 else f"{value:.0f}"
+    text = f"{round(value, 3) + 0.0:.3g}" if abs(value) < 1000 else f"{value:.0f}"  # no -0
+    return text.replace("-", "\u2212")
 
 
 def with_unit(text: str, metric: str) -> str:
