@@ -28,7 +28,8 @@ def run(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.config import load
-    from rotctl.run import LOG_NAME, run
+    from rotctl.log import LOG_NAME
+    from rotctl.run import run
 
     config = load(arguments.overrides)
     steps = round(config.duration * config.controller.rate)
@@ -186,8 +187,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
+    from rotctl.results import experiments
     from rotctl.sweep.engines import make_engine
-    from rotctl.sweep.experiments import matrix
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
@@ -197,12 +198,14 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
-    runs = planned(points(matrix(arguments.overrides)))
+    runs = planned(points(experiments.matrix(arguments.overrides)))
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         if arguments.dry_run:
             print(without_running(runs, arguments.out, engine.workers))
             return 0
         with locked(arguments.out):
+            if experiment := experiments.named(arguments.overrides):
+                experiments.copy_into(arguments.out, experiment)
             watched = None if not arguments.quiet else True  # None: only on a terminal
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as bar:
                 there = plan(runs, arguments.out, arguments.strict, bar.update)
@@ -219,8 +222,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
 def summarise(arguments: argparse.Namespace) -> int:
     """Make tables of the runs below a folder."""
-    from rotctl.sweep.groups import grouped, markdown, written
-    from rotctl.sweep.table import table
+    from rotctl.results.groups import grouped, markdown, written
+    from rotctl.results.table import table
 
     found = table(arguments.folder)
     groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
@@ -230,6 +233,30 @@ def summarise(arguments: argparse.Namespace) -> int:
     for note in [*found.notes, *groups.notes]:
         print(one_line(note), file=sys.stderr)
     return 0
+
+
+def report(arguments: argparse.Namespace) -> int:
+    """Make the pages on many runs, and compare their claims with those of an earlier report."""
+    from tqdm import tqdm
+
+    from rotctl.report.site import against
+    from rotctl.report.site.build import report
+
+    # Before it is replaced, should it be the same folder.
+    old = against.read(arguments.against) if arguments.against else None
+    with tqdm(desc="report", unit="part", leave=False, disable=None, delay=0.2) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        claims = report(arguments.folder, arguments.out, progress)
+    print(arguments.out / "index.html")
+    if old is None:
+        return 0
+    found = against.changes(old, claims)
+    print(found.text)
+    return 1 if found.worse else 0
 
 
 def tune(arguments: argparse.Namespace) -> int:

@@ -15,6 +15,7 @@ examples:
   rotctl run controller.weights.angular_momentum=8
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
+  rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen
   rotctl show behaviour=forward_roll_1            the whole config, with these choices
   rotctl replay runs/<run id>/run.h5              a page that plays it in the browser
@@ -24,7 +25,8 @@ examples:
   rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
+the solver broke down, a run of a sweep could not be run, or a claim got worse (rotctl report
+--against), 2 bad input, 130 interrupted
 """
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
@@ -217,6 +219,26 @@ def _parser() -> argparse.ArgumentParser:
     )
     summarise.set_defaults(command=commands.summarise)
 
+    report = chosen.add_parser(
+        "report",
+        help="pages on many runs: claims with verdicts, pictures, replays",
+        description="Make a static folder of pages out of the runs below DIR, a sweep or several: "
+        "the claims of their experiments with verdicts, pictures and replays of the median and "
+        "the worst run of each row, charts, and where it all comes from. Also claims.csv, "
+        "junit.xml and summary.md. Nothing is simulated again.",
+    )
+    report.add_argument("folder", type=Path, metavar="DIR")
+    report.add_argument(
+        "--out", type=_folder, default=Path("site"), help="folder for the pages [%(default)s]"
+    )
+    report.add_argument(
+        "--against",
+        type=Path,
+        metavar="OLD",
+        help="an earlier report: print which verdicts changed, exit 1 if one got worse",
+    )
+    report.set_defaults(command=commands.report)
+
     tune = chosen.add_parser(
         "tune",
         help="search for poses or gains over many starts",
@@ -299,7 +321,7 @@ def _parser() -> argparse.ArgumentParser:
         command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
     for command in (importing, authoring):
         command.set_defaults(interrupted="an unfinished clip is not written")
-    for command in (render, replay, plot, preview):
+    for command in (render, replay, plot, preview, report):
         command.set_defaults(interrupted="an unfinished picture is not written")
     for command in (sweep, tune):
         command.set_defaults(interrupted="the same command does what is left")

@@ -12,12 +12,12 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
+from rotctl.results.code import code_version
+from rotctl.results.manifest import read
 from rotctl.run import make, publish
-from rotctl.sweep.code import code_version
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
-from rotctl.sweep.manifest import read
 from rotctl.sweep.plan import plan, planned
 from rotctl.sweep.points import points
 

@@ -19,6 +19,7 @@ MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
 MAX_MODEL_BYTES = 16 * 2**20
 MAX_TOTAL_BYTES = 2 * 2**30
+LOG_NAME = "run.h5"  # in a folder that the run id names
 
 
 @dataclass(frozen=True)
