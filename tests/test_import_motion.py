@@ -93,6 +93,17 @@ def test_the_roll_is_found_between_standing_about(tmp_path):
     assert made.clip.rate == pytest.approx(1.0, abs=0.1)
 
 
+def test_a_rock_on_the_back_is_no_roll(tmp_path, cli):
+    path = tmp_path / "a.bvh"
+    path.write_text(bvh_text(in_order("forward_roll", turns=0.5)))
+    code, _, error = cli("import-motion", path, "--out", tmp_path / "a.yaml")
+    assert code == 2
+    assert re.fullmatch(
+        r"rotctl: no roll found: the body turns 0\.\d\d rev at most; give --cycle START:END \[s\]\n",
+        error,
+    )
+
+
 def test_the_other_way_round_is_a_mirror_image(tmp_path):
     # Half a turn about the way it rolls, and a log roll has its head on the other side.
     positions = in_order("log_roll", turns=1.0)

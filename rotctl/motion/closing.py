@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from rotctl.errors import InputError
-from rotctl.motion.turning import AXIS, Motion
+from rotctl.motion.turning import AXIS, Motion, rolled_by
 from rotctl.rotations import Array
 
 DENSE = 360  # postures of the cycle
@@ -56,7 +56,7 @@ def close(motion: Motion, turns: Array) -> Closed:
     share = np.linspace(-0.5, 0.5, DENSE + 1)
     gap = poses[-1] - poses[0]
     poses -= np.outer(share, gap)
-    roll = Rotation.from_rotvec(np.outer(tau * (share + 0.5), AXIS))
+    roll = rolled_by(tau * (share + 0.5))
     unrolled = roll.inv() * pelvis  # what is left of a steady turn
     missed = (unrolled[-1] * unrolled[0].inv()).as_rotvec()
     pelvis = roll * Rotation.from_rotvec(np.outer(-share, missed)) * unrolled
