@@ -99,7 +99,8 @@ def test_a_rock_on_the_back_is_no_roll(tmp_path, cli):
     code, _, error = cli("import-motion", path, "--out", tmp_path / "a.yaml")
     assert code == 2
     assert re.fullmatch(
-        r"rotctl: no roll found: the body turns 0\.\d\d rev at most; give --cycle START:END \[s\]\n",
+        r"rotctl: no roll found: the body turns 0\.\d\d rev at most; "
+        r"give --cycle START:END \[s\]\n",
         error,
     )
 
