@@ -192,3 +192,19 @@ def test_keys_from_nowhere():
     with pytest.raises(InputError) as error:
         load_keys(Path("no/keys.yaml"))
     assert str(error.value) == "no/keys.yaml: no such file"
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_limbs_are_not_inside_one_another(name):
+    # The physics would keep them out, and the pose could never be reached.
+    mj = adult().mj
+    data = mujoco.MjData(mj)
+    for position in preview(adult(), load_clip(name), 48)[0]:
+        data.qpos[:] = position
+        mujoco.mj_forward(mj, data)
+        deep = [
+            (contact.dist, [mj.geom(int(geom)).name for geom in contact.geom])
+            for contact in data.contact
+            if 0 not in mj.geom_bodyid[contact.geom] and contact.dist < -0.05
+        ]
+        assert not deep
