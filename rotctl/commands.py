@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rotctl.mechanics.model import Model
     from rotctl.motion import Clip
 
+CLIP_FRAMES = 12  # of the filmstrip beside a clip
 OVERHEAD_RUNS = 1000  # of a sweep that rotctl bench times
 
 
@@ -297,9 +298,12 @@ def import_motion(arguments: argparse.Namespace) -> int:
 
     model = _model(arguments.character)
     capture = read_capture(arguments.file, arguments.skeleton, arguments.rate)
-    with tqdm(
-        total=len(capture.time), desc="retarget", unit="frame", leave=False, disable=None, delay=0.2
-    ) as bar:
+    with tqdm(desc="retarget", unit="frame", leave=False, disable=None, delay=0.2) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
         made = import_motion(
             model,
             arguments.character,
@@ -308,12 +312,13 @@ def import_motion(arguments: argparse.Namespace) -> int:
             arguments.cycle,
             arguments.symmetric,
             arguments.licence,
-            bar.update,
+            progress,
         )
+    out = _clip_written(arguments, made.clip)
     print(printable(imported(made)))
     for warning in clock_warnings(made.flights):
         print(f"rotctl: warning: {warning}", file=sys.stderr)
-    return _clip_written(arguments, model, made.clip)
+    return _clip_shown(arguments, model, made.clip, out)
 
 
 def author_motion(arguments: argparse.Namespace) -> int:
@@ -322,7 +327,7 @@ def author_motion(arguments: argparse.Namespace) -> int:
 
     model = _model(arguments.character)
     clip = author(model, load_keys(arguments.file), arguments.character)
-    return _clip_written(arguments, model, clip)
+    return _clip_shown(arguments, model, clip, _clip_written(arguments, clip))
 
 
 def preview_motion(arguments: argparse.Namespace) -> int:
@@ -343,17 +348,22 @@ def _model(character: str) -> "Model":
     return model_of(load([f"character={character}"]))
 
 
-def _clip_written(arguments: argparse.Namespace, model: "Model", clip: "Clip") -> int:
-    """Write a clip, and a filmstrip if wanted and if this machine can draw."""
+def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
+    """Write a clip; returns where it is."""
     from rotctl.motion.writing import text
     from rotctl.report.files import replace
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
     replace(out, text(clip).encode())
+    return out
+
+
+def _clip_shown(arguments: argparse.Namespace, model: "Model", clip: "Clip", out: Path) -> int:
+    """Say where a clip is; draw it if that is wanted and this machine can."""
     print(f"clip       {out}")
     if arguments.filmstrip:
         try:
-            _draw_clip(model, clip, out.with_suffix(".png"))
+            _draw_clip(model, clip, out.with_suffix(".png"), CLIP_FRAMES)
         except InputError as error:
             print(f"rotctl: no filmstrip: {error}", file=sys.stderr)
         else:
@@ -361,7 +371,7 @@ def _clip_written(arguments: argparse.Namespace, model: "Model", clip: "Clip") -
     return 0
 
 
-def _draw_clip(model: "Model", clip: "Clip", out: Path, frames: int = 12) -> None:
+def _draw_clip(model: "Model", clip: "Clip", out: Path, frames: int) -> None:
     from rotctl.motion.preview import preview
     from rotctl.report.motion_strip import motion_strip
 

@@ -1,15 +1,19 @@
 """Captured motion to clips: a known roll written as a BVH file comes back as it was."""
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pytest
 from captures import adult, bvh_text, in_order
+from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from rotctl.cli import main
+from rotctl.listing import conf_dir
 from rotctl.motion import load_clip
 from rotctl.motion.importing import import_motion, read_capture
 from rotctl.motion.preview import motion_of
@@ -89,6 +93,18 @@ def test_the_roll_is_found_between_standing_about(tmp_path):
     assert made.clip.rate == pytest.approx(1.0, abs=0.1)
 
 
+def test_a_rock_on_the_back_is_no_roll(tmp_path, cli):
+    path = tmp_path / "a.bvh"
+    path.write_text(bvh_text(in_order("forward_roll", turns=0.5)))
+    code, _, error = cli("import-motion", path, "--out", tmp_path / "a.yaml")
+    assert code == 2
+    assert re.fullmatch(
+        r"rotctl: no roll found: the body turns 0\.\d\d rev at most; "
+        r"give --cycle START:END \[s\]\n",
+        error,
+    )
+
+
 def test_the_other_way_round_is_a_mirror_image(tmp_path):
     # Half a turn about the way it rolls, and a log roll has its head on the other side.
     positions = in_order("log_roll", turns=1.0)
@@ -153,3 +169,121 @@ def _centre(position):
     data.qpos[:] = position
     mujoco.mj_forward(mj, data)
     return mj.body_mass @ data.xipos / mj.body_mass.sum()
+
+
+# ---------------------------------------------------------------- the commands
+
+
+@pytest.fixture(scope="module")
+def captured(tmp_path_factory):
+    path = tmp_path_factory.mktemp("captured") / "roll.bvh"
+    path.write_text(bvh_text(in_order("forward_roll", turns=1.0, frames=60)))
+    return path
+
+
+def test_import_from_the_shell(captured, tmp_path):
+    command = [sys.executable, "-m", "rotctl", "import-motion", str(captured), "--out", "my roll"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert re.fullmatch(r"forward roll, \d\.\d{3} to \d\.\d{3} s of the file", lines[0])
+    assert [line.split()[0] for line in lines[2:8]] == ["pelvis"] * 2 + ["chest"] * 2 + ["head"] * 2
+    assert re.search(r"turns +0\.\d\d rev in 0\.\d\d s, 1\.0\d rev/s, 2\.\d\d m/s", done.stdout)
+    assert re.search(r"loop gap +0\.\d\d rad rms, 0\.\d\d rad at most \(\w+\), pelvis", done.stdout)
+    assert lines[-1] == "clip       my roll.yaml"
+    assert load_clip(str(tmp_path / "my roll.yaml")).name == "roll"
+
+
+def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
+    monkeypatch.setattr("rotctl.commands.CLIP_FRAMES", 2)
+    out = tmp_path / "clip.yaml"
+    keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
+    for command, file in (("import-motion", captured), ("author-motion", keys)):
+        code, said, error = cli(command, file, "--out", out, "--filmstrip")
+        assert (code, error) == (0, "")
+        assert said.endswith(f"clip       {out}\nfilmstrip  {out.with_suffix('.png')}\n")
+    assert load_clip(str(out)) == load_clip("log_roll")
+    picture = tmp_path / "preview.png"
+    assert cli("preview-motion", "log_roll", "--out", picture, "--frames", 2) == (
+        0,
+        f"{picture}\n",
+        "",
+    )
+    drawn = np.asarray(Image.open(picture))
+    assert np.array_equal(drawn, np.asarray(Image.open(out.with_suffix(".png"))))
+    assert len(np.unique(drawn.reshape(-1, 3), axis=0)) > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["import-motion", "{roll}", "--out", "{tmp}/a", "--cycle", "0.2:9"],
+         "--cycle=0.2:9: valid: 0 to 0.983 s, START before END"),
+        (["import-motion", "{roll}", "--out", "{tmp}/a", "--cycle", "0.5:0.2"],
+         "--cycle=0.5:0.2: valid: 0 to 0.983 s, START before END"),
+        (["import-motion", "{roll}", "--out", "{tmp}/a", "--cycle", "0.5:0.51"],
+         "--cycle=0.5:0.51: 1 frames, at least 5"),
+        (["import-motion", "{roll}", "--out", "{tmp}/a", "--cycle", "0.1:0.2"],
+         "no roll about one axis: the body turns 0.1"),
+        (["import-motion", "{roll}", "--out", "{tmp}/no/a"],
+         "cannot write {tmp}/no/a.yaml: No such file or directory"),
+        (["import-motion", "{roll}", "--out", "{tmp}/a", "--character", "nobody"],
+         "nobody"),
+        (["preview-motion", "{roll}", "--out", "{tmp}/a"], "{roll}:"),
+        (["preview-motion", "log_roll", "--out", "{tmp}/a", "--frames", "0"],
+         "frames is 0, valid: 1 to 200"),
+        (["author-motion", "{roll}", "--out", "{tmp}/a"], "{roll}:"),
+    ],
+)  # fmt: skip
+def test_misuse_is_one_line(captured, tmp_path, cli, arguments, complaint):
+    names = {"roll": captured, "tmp": tmp_path}
+    code, out, error = cli(*(text.format(**names) for text in arguments))
+    assert (code, out) == (2, "")
+    assert error.startswith("rotctl: ")
+    assert complaint.format(**names) in error
+    assert error.count("\n") == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cycle_that_is_none(capsys):
+    with pytest.raises(SystemExit):
+        main(["import-motion", "a.bvh", "--out", "a", "--cycle", "1-2"])
+    assert "'1-2': valid: START:END in seconds" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- real captures, where they are
+
+
+@pytest.mark.parametrize(
+    ("file", "kind", "rate", "fall"),
+    [
+        ("DeepMimic/humanoid3d_roll.txt", "left", (0.5, 1.0), None),
+        ("DeepMimic/humanoid3d_backflip.txt", "right", (0.6, 1.7), (5.0, 9.0)),
+        ("MASS/MASS_backflip.bvh", "right", (0.9, 3.0), (45.0, 70.0)),
+        ("CMU/backflip.amc", "right", (1.0, 3.3), (45.0, 70.0)),
+    ],
+)
+def test_real_captures(file, kind, rate, fall):
+    path = SHARED / file
+    if not path.exists():
+        pytest.skip(f"no {path}")
+    made = import_motion(adult(), "adult", path, read_capture(path, None, None))
+    assert made.clip.roll_about == kind
+    assert rate[0] < made.clip.rate < rate[1]
+    error = dict(zip(made.segments, np.degrees(np.median(made.error, axis=0)), strict=True))
+    assert max(v for name, v in error.items() if not name.startswith("foot")) < 4.0
+    if fall is None:
+        assert not made.flights
+    else:
+        assert fall[0] < made.flights[0].fall < fall[1]
+
+
+def test_the_real_roll_mirror_averaged():
+    path = SHARED / "DeepMimic/humanoid3d_roll.txt"
+    if not path.exists():
+        pytest.skip(f"no {path}")
+    made = import_motion(adult(), "adult", path, read_capture(path, None, None), symmetrise=True)
+    assert made.clip.source.endswith(", mirror average")
+    assert made.span == pytest.approx(1.0, abs=0.05)
+    assert np.degrees(made.closed.pelvis_gap) < 5.0
+    assert "hip_y" in made.clip.joints

@@ -9,6 +9,9 @@ import yaml
 from rotctl.errors import InputError
 from rotctl.motion import Clip, load_clip, make_reference_pair
 from rotctl.motion.clip import names
+from rotctl.motion.preview import motion_of
+from rotctl.motion.turning import pelvis_turn
+from rotctl.motion.writing import text
 
 N = 24
 WAVE = [1.0 + 0.5 * math.cos(2 * math.pi * k / N) for k in range(N)]
@@ -145,3 +148,12 @@ def test_no_file(tmp_path):
         with pytest.raises(InputError) as error:
             load_clip(f"{tmp_path}/{name}")
         assert str(error.value) == f"{tmp_path / name}: {complaint}"
+
+
+def test_a_clip_without_a_pelvis_turns_evenly_and_can_be_written(world):
+    plain = Clip(name="wave", roll_about="right", joints={"knee": WAVE})
+    assert yaml.safe_load(text(plain)) == {
+        "name": "wave", "roll_about": "right", "joints": {"knee": WAVE}
+    }  # fmt: skip
+    turned = pelvis_turn(motion_of(world.model, plain).pelvis, "right")
+    assert turned == pytest.approx(2 * math.pi * np.arange(N) / N)

@@ -1,5 +1,6 @@
 """Key poses over the turn of the pelvis, written by hand, to a clip."""
 
+from math import tau
 from pathlib import Path
 from typing import Annotated
 
@@ -13,7 +14,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip, RollAbout, joint_columns
 from rotctl.motion.cycle import SAMPLES, by_excursion
-from rotctl.motion.turning import Motion, upright
+from rotctl.motion.turning import Motion, rolled_by, upright
 from rotctl.motion.untrusted import read_yaml
 from rotctl.motion.writing import make_clip
 from rotctl.rotations import Array
@@ -86,9 +87,8 @@ def author(model: Model, keys: Keys, character: str) -> Clip:
     )
     places = np.arange(DENSE) / DENSE
     between = curve(places)
-    roll = Rotation.from_rotvec(np.outer(2.0 * np.pi * places, [0.0, 1.0, 0.0]))
     tilt = Rotation.from_rotvec(between[:, -3:])
-    dense = Motion(between[:, :-3], roll * upright(keys.roll_about) * tilt)
+    dense = Motion(between[:, :-3], rolled_by(tau * places) * upright(keys.roll_about) * tilt)
     return make_clip(
         model,
         by_excursion(model, dense, keys.roll_about, SAMPLES),

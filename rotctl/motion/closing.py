@@ -7,10 +7,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from rotctl.errors import InputError
-from rotctl.motion.turning import AXIS, Motion
+from rotctl.motion.turning import AXIS, Motion, rolled_by
 from rotctl.rotations import Array
 
 DENSE = 360  # postures of the cycle
+LEAST = 0.5  # [rev] that a cycle must turn before it is stretched to one
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ def close(motion: Motion, turns: Array) -> Closed:
     advance = turns @ AXIS
     furthest = np.maximum.accumulate(np.append(0.0, np.cumsum(advance)))
     onward = np.append(True, np.diff(furthest) > 1e-9)
-    if onward.sum() < 4 or furthest[-1] < 0.1:
-        raise InputError(f"the body turns {furthest[-1] / tau:.2f} rev in this cycle, not once")
+    if onward.sum() < 4 or furthest[-1] < LEAST * tau:
+        raise InputError(f"no roll about one axis: the body turns {furthest[-1] / tau:.2f} rev")
     place = np.linspace(0.0, furthest[-1], DENSE + 1)
     made = furthest[onward]
     poses = np.stack([np.interp(place, made, joint) for joint in motion.poses[onward].T], axis=1)
@@ -55,7 +56,7 @@ def close(motion: Motion, turns: Array) -> Closed:
     share = np.linspace(-0.5, 0.5, DENSE + 1)
     gap = poses[-1] - poses[0]
     poses -= np.outer(share, gap)
-    roll = Rotation.from_rotvec(np.outer(tau * (share + 0.5), AXIS))
+    roll = rolled_by(tau * (share + 0.5))
     unrolled = roll.inv() * pelvis  # what is left of a steady turn
     missed = (unrolled[-1] * unrolled[0].inv()).as_rotvec()
     pelvis = roll * Rotation.from_rotvec(np.outer(-share, missed)) * unrolled

@@ -36,13 +36,17 @@ def by_excursion(model: Model, cycle: Motion, roll_about: RollAbout, samples: in
         )
     phase = np.append(0.0, np.cumsum(np.maximum(advance, _LEAST)))
     phase /= phase[-1]
-    passes = int(np.argmax(np.floor(turned[1:] + 1e-9) > np.floor(turned[:-1] + 1e-9)))
-    share = (np.floor(turned[passes + 1] + 1e-9) - turned[passes]) / (
-        turned[passes + 1] - turned[passes]
-    )
-    zero = phase[passes] + share * (phase[passes + 1] - phase[passes])
+    zero = _at_whole_turn(turned, phase)
     wanted = np.mod(zero + np.arange(samples) / samples, 1.0)
     return at_places(cycle, np.interp(wanted, phase, np.arange(n + 1) / n))
+
+
+def _at_whole_turn(turned: Array, phase: Array) -> float:
+    """The phase at which `turned` [rev] first comes to a whole number."""
+    whole = np.floor(turned + 1e-9)  # an authored cycle starts at one, but for rounding
+    before = int(np.argmax(np.diff(whole) > 0.0))
+    pair = slice(before, before + 2)
+    return float(np.interp(whole[before + 1], turned[pair], phase[pair]))
 
 
 def at_places(cycle: Motion, places: Array) -> Motion:

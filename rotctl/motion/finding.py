@@ -43,15 +43,12 @@ def find_roll(time: Array, motion: Motion, turns: Array) -> tuple[int, int]:
     best, found = np.inf, None
     for first in tried:
         later = tried[(tried > first) & (time[tried] <= time[first] + LONGEST)]
-        span = np.abs(turned[later] - turned[first])  # there and back: either way
-        later, span = (
-            later[(SPAN[0] <= span) & (span <= SPAN[1])],
-            span[(SPAN[0] <= span) & (span <= SPAN[1])],
-        )
+        span = np.abs(turned[later] - turned[first])  # there or back
+        later = later[(SPAN[0] <= span) & (span <= SPAN[1])]
         if not len(later):
             continue
-        cost = _cost(motion, first, later) + MISSING * np.abs(span - 1.0)
-        cost += DAWDLING * (time[later] - time[first])
+        cost = _apart(motion, first, later) + DAWDLING * (time[later] - time[first])
+        cost += MISSING * np.abs(np.abs(turned[later] - turned[first]) - 1.0)
         least = int(np.argmin(cost))
         if cost[least] < best:
             best, found = cost[least], (int(first), int(later[least]))
@@ -68,13 +65,14 @@ def roll_kind(motion: Motion) -> tuple[RollAbout, bool]:
 
     A log roll with the head to -y is the mirror image of ours.
     """
-    forward, left, up = motion.pelvis.inv().apply([0.0, 1.0, 0.0]).mean(axis=0)
+    _, left, up = motion.pelvis.inv().apply([0.0, 1.0, 0.0]).mean(axis=0)
     if abs(up) > abs(left):
         return "head", bool(up < 0.0)
     return ("left" if left > 0.0 else "right"), False
 
 
-def _cost(motion: Motion, first: int, later: NDArray[np.int64]) -> Array:
+def _apart(motion: Motion, first: int, later: NDArray[np.int64]) -> Array:
+    """How far postures are from the first [rad]."""
     apart = np.sqrt(np.mean((motion.poses[later] - motion.poses[first]) ** 2, axis=1))
     turned = (motion.pelvis[later] * motion.pelvis[int(first)].inv()).magnitude()
     return np.asarray(apart + PELVIS * turned)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation, RotationSpline
+from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
@@ -20,10 +20,10 @@ from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.deepmimic import read_deepmimic
 from rotctl.motion.finding import find_roll, roll_kind, rolling_axis
 from rotctl.motion.flight import Flight, flights
-from rotctl.motion.ground import centres, heights
+from rotctl.motion.ground import centres
 from rotctl.motion.landmarks import Landmarks, find_landmarks
 from rotctl.motion.mirror import mirrored, symmetric
-from rotctl.motion.retarget import Retargeted, retarget
+from rotctl.motion.retarget import retarget
 from rotctl.motion.turning import Motion, qpos, rotation_between_postures
 from rotctl.motion.writing import make_clip
 from rotctl.rotations import Array
@@ -48,8 +48,6 @@ class Imported:
         joint_names: nu names.
         mirrored: whether left and right were exchanged.
         flights: of the whole time looked at.
-        time: (m,) of the cycle's frames [s].
-        positions: (m, nq) generalised positions of them, the roll going to +x.
     """
 
     clip: Clip
@@ -63,8 +61,6 @@ class Imported:
     joint_names: tuple[str, ...]
     mirrored: bool
     flights: list[Flight]
-    time: Array
-    positions: Array
 
 
 def read_capture(path: Path, skeleton: Path | None, rate: float | None) -> Capture:
@@ -101,7 +97,7 @@ def import_motion(
     cycle: tuple[float, float] | None = None,
     symmetrise: bool = False,
     licence: str = "",
-    progress: Callable[[int], object] | None = None,
+    progress: Callable[[int, int], object] | None = None,
 ) -> Imported:
     """Make a clip of a captured roll.
 
@@ -111,7 +107,7 @@ def import_motion(
         cycle: its start and end [s]; without it the roll that closes best is taken.
         symmetrise: take the mean of the roll and its mirror image.
         licence: of the source.
-        progress: told of frames done.
+        progress: told how many frames are done, and of how many.
 
     Raises:
         InputError: the capture is not of a human, or there is no roll in it.
@@ -119,8 +115,9 @@ def import_motion(
     chosen = _frames(path, capture.time, cycle)
     marks = find_landmarks(path, capture)
     marks = Landmarks({name: at[chosen] for name, at in marks.points.items()}, marks.leg)
+    time, marks = _fine(capture.time[chosen], marks)
     fitted = retarget(model, marks, progress)
-    time, motion, root = _fine(model, capture.time[chosen], fitted)
+    motion, root = fitted.motion, fitted.root
     turns = rotation_between_postures(model, motion)
     flown = flights(model, time, _positions(model, motion, root), fitted.leg)
 
@@ -139,8 +136,7 @@ def import_motion(
         motion, root = symmetric(model, motion), root * [1.0, 0.0, 1.0]
     turns = rotation_between_postures(model, motion)
     closed = close(motion, turns)
-    positions = _positions(model, motion, root)
-    centre = centres(model, positions[[0, -1]])
+    centre = centres(model, _positions(model, motion, root)[[0, -1]])
     span, lasted = float(turns[:, 1].sum()) / tau, float(time[-1] - time[0])
     clip = make_clip(
         model,
@@ -166,8 +162,6 @@ def import_motion(
         joint_names=model.joint_names,
         mirrored=other_way,
         flights=flown,
-        time=time,
-        positions=_grounded(model, positions, bool(flown)),
     )
 
 
@@ -190,24 +184,16 @@ def _frames(path: Path, time: Array, cycle: tuple[float, float] | None) -> slice
     return slice(int(first), int(after))
 
 
-def _fine(model: Model, time: Array, fitted: Retargeted) -> tuple[Array, Motion, Array]:
-    """Times, postures and root positions at `FINE` steps, where the capture's are longer."""
-    if np.median(np.diff(time)) <= 1.01 * FINE or len(time) < FEWEST:
-        return time, fitted.motion, fitted.root
+def _fine(time: Array, marks: Landmarks) -> tuple[Array, Landmarks]:
+    """The landmarks at `FINE` steps, where the capture's are longer."""
+    if np.median(np.diff(time)) <= 1.01 * FINE:
+        return time, marks
     fine = np.linspace(time[0], time[-1], 1 + round((time[-1] - time[0]) / FINE))
-    poses = np.clip(CubicSpline(time, fitted.motion.poses)(fine), *model.joint_range.T)
-    pelvis = RotationSpline(time, fitted.motion.pelvis)(fine)
-    return fine, Motion(poses, pelvis), CubicSpline(time, fitted.root)(fine)
+    points = {name: CubicSpline(time, at)(fine) for name, at in marks.points.items()}
+    return fine, Landmarks(points, marks.leg)
 
 
 def _positions(model: Model, motion: Motion, root: Array) -> Array:
     positions = qpos(model, motion)
     positions[:, :3] = root
-    return positions
-
-
-def _grounded(model: Model, positions: Array, flies: bool) -> Array:
-    """On the ground in every frame, or, if it flies, in most."""
-    low = heights(model, positions)
-    positions[:, 2] -= np.percentile(low, 20) if flies else low
     return positions

@@ -1,5 +1,7 @@
 """A clip as postures on the ground, to be looked at."""
 
+from math import tau
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -8,7 +10,7 @@ from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
 from rotctl.motion.cycle import at_places
 from rotctl.motion.ground import rolled
-from rotctl.motion.turning import Motion, upright
+from rotctl.motion.turning import Motion, rolled_by, upright
 from rotctl.rotations import Array
 
 MAX_FRAMES = 200
@@ -39,6 +41,6 @@ def motion_of(model: Model, clip: Clip) -> Motion:
     if clip.pelvis is not None:
         pelvis = Rotation.from_quat(np.array(clip.pelvis), scalar_first=True)
     else:
-        turns = 2.0 * np.pi * np.arange(clip.samples) / clip.samples
-        pelvis = Rotation.from_rotvec(np.outer(turns, [0.0, 1.0, 0.0])) * upright(clip.roll_about)
+        turns = tau * np.arange(clip.samples) / clip.samples
+        pelvis = rolled_by(turns) * upright(clip.roll_about)
     return Motion(clip.poses(model), pelvis)

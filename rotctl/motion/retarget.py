@@ -71,12 +71,12 @@ class Retargeted:
 
 
 def retarget(
-    model: Model, marks: Landmarks, progress: Callable[[int], object] | None = None
+    model: Model, marks: Landmarks, progress: Callable[[int, int], object] | None = None
 ) -> Retargeted:
     """Fit the character to the landmarks, frame by frame.
 
     Args:
-        progress: told after each frame: 1.
+        progress: told after each frame how many are done, and of how many.
 
     Raises:
         InputError: the character has not the bodies of a human.
@@ -94,7 +94,7 @@ def retarget(
         position = fit.solve(position, targets[i], TO_PREVIOUS if i else 0.0)
         positions[i], errors[i] = position, fit.error(position, targets[i])
         if progress:
-            progress(1)
+            progress(i + 1, n)
     motion = Motion(positions[:, 7:], Rotation.from_quat(positions[:, 3:7], scalar_first=True))
     middle = 0.5 * scale * (marks.points["hip_l"] + marks.points["hip_r"])
     root = middle - motion.pelvis.apply(fit.hips)

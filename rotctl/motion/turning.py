@@ -41,6 +41,11 @@ def upright(roll_about: RollAbout) -> Rotation:
     return Rotation.from_matrix(_UPRIGHT[roll_about])
 
 
+def rolled_by(angles: Array) -> Rotation:
+    """Turns about the rolling axis by angles (n,) [rad]."""
+    return Rotation.from_rotvec(np.outer(angles, AXIS))
+
+
 def pelvis_turn(pelvis: Rotation, roll_about: RollAbout) -> Array:
     """How far each orientation has turned about +y since phase 0 (n,), unwrapped [rad]."""
     turned = (pelvis * upright(roll_about).inv()).as_matrix()

@@ -38,7 +38,9 @@ def text(clip: Clip) -> str:
         for name in clip.__dataclass_fields__
         if (value := getattr(clip, name)) not in ("", None)
     }
-    tracks = {"joints": fields.pop("joints"), "pelvis": [list(q) for q in fields.pop("pelvis")]}
+    tracks = {"joints": fields.pop("joints")}
+    if clip.pelvis is not None:
+        tracks["pelvis"] = [list(quaternion) for quaternion in fields.pop("pelvis")]
     words = yaml.safe_dump(fields, sort_keys=False, allow_unicode=True, width=100)
     samples = yaml.safe_dump(tracks, sort_keys=False, default_flow_style=None, width=100)
     return f"{words}{samples}"
