@@ -84,7 +84,7 @@ def _metre_marks(
 ) -> list[tuple[tuple[float, float], str]]:
     """Ticks on the ground at whole metres; returns where which label goes."""
     x, y, _ = camera.target
-    near = y - MARK_SIDE
+    near = y - max(MARK_SIDE, stage.beside)
     labels = []
     for metre in range(int(np.floor(x)) - 3, int(np.ceil(x)) + 4):
         ends = [[metre, side, stage.ground(metre, side)] for side in (near, near + 0.1)]

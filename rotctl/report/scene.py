@@ -1,4 +1,7 @@
-"""A character on its ground, seen from the side: qpos to pictures, and world points to pixels."""
+"""A character on its ground: qpos to pictures, and world points to pixels.
+
+It is seen from the side of its way; who lies across it, as in a log roll, from ahead.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,7 +18,6 @@ from rotctl.rotations import Array
 
 Pixels = NDArray[np.uint8]
 
-ELEVATION = radians(-7.0)  # the camera looks down a little, so that the ground has depth
 FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
 MARGIN = 1.25  # of the picture around the character
 LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked character from filling the picture
@@ -30,15 +32,42 @@ _CHARACTER, _WORLD, _LOOSE = 0, 1, 2  # geom groups, all drawn
 
 
 @dataclass(frozen=True)
-class Camera:
-    """A camera that looks along +y, so that +x is to the right.
+class View:
+    """A direction to look in.
 
     Attributes:
+        azimuth: of the horizontal direction, from +x to the left [rad].
+        elevation: above the horizon [rad].
+    """
+
+    azimuth: float
+    elevation: float
+
+    @property
+    def axes(self) -> Array:
+        """Rows are the picture's right, its up and forward into it (3, 3), world."""
+        ca, sa = np.cos(self.azimuth), np.sin(self.azimuth)
+        ce, se = np.cos(self.elevation), np.sin(self.elevation)
+        return np.array([[sa, -ca, 0.0], [-ca * se, -sa * se, ce], [ca * ce, sa * ce, se]])
+
+
+SIDE = View(radians(90.0), radians(-7.0))  # along +y, so that +x is to the right; a little down
+AHEAD = View(radians(150.0), radians(-16.0))  # from ahead and above, so that a long body is seen
+LONG = 1.5  # times as wide across the way as along it, and a body is seen from ahead
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera that follows the character.
+
+    Attributes:
+        view: the direction it looks in.
         target: (3,) the point in the middle of the picture [m].
         distance: from there [m].
         width, height: of the picture in pixels.
     """
 
+    view: View
     target: Array
     distance: float
     width: int
@@ -46,13 +75,12 @@ class Camera:
 
     def pixels(self, points: Array) -> Array:
         """Where world points (..., 3) are in the picture (..., 2): x to the right, y down."""
-        forward = np.array([0.0, np.cos(ELEVATION), np.sin(ELEVATION)])
-        up = np.array([0.0, -np.sin(ELEVATION), np.cos(ELEVATION)])
+        right, up, forward = self.view.axes
         offset = points - self.target
         scale = 0.5 * self.height / tan(0.5 * FIELD_OF_VIEW) / (offset @ forward + self.distance)
         return np.stack(
             [
-                0.5 * self.width + scale * offset[..., 0],
+                0.5 * self.width + scale * (offset @ right),
                 0.5 * self.height - scale * (offset @ up),
             ],
             axis=-1,
@@ -70,6 +98,8 @@ class Scene:
         self._limbs = model.body_rootid[model.geom_bodyid] == 1
         self._distance = 0.0
         self._centre = 0.0  # [m] height of the camera's target above the ground
+        self._view_in = SIDE
+        self.beside = 0.0  # [m] half the character's width across the way
         _light(model, width, height, shadows)
         _shade_left(model)
         model.geom_group[:] = np.where(self._limbs, _CHARACTER, _LOOSE)
@@ -81,18 +111,23 @@ class Scene:
         self._view.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option = mujoco.MjvOption()
         self._option.sitegroup[:] = 0
-        self._sky = _gradient(width, height)
+        self._sky = _gradient(SIDE, width, height)
         self._drawing: Any = None
 
     def fit(self, states: Array) -> None:
-        """Choose one camera distance with which the character fits in all states (n, nq)."""
-        wide, low, high = 0.0, 0.0, 0.0
-        for state in states:
+        """Choose one view and distance with which the character fits in all states (n, nq)."""
+        halves, low, high = np.zeros((len(states), 2)), 0.0, 0.0
+        for i, state in enumerate(states):
             self._pose(state)
-            left, right, bottom, top = self._outline()
-            ground = self.ground(0.5 * (left + right), self._data.subtree_com[1, 1])
-            wide = max(wide, 0.5 * (right - left))
-            low, high = min(low, bottom - ground), max(high, top - ground)
+            least, most = self._outline()
+            ground = self.ground(0.5 * (least[0] + most[0]), self._data.subtree_com[1, 1])
+            halves[i] = 0.5 * (most - least)[:2]
+            low, high = min(low, least[2] - ground), max(high, most[2] - ground)
+        along, across = halves.mean(axis=0)
+        self._view_in = AHEAD if across > LONG * along else SIDE
+        self._sky = _gradient(self._view_in, self.width, self.height)
+        self.beside = float(halves[:, 1].max())
+        wide = float((halves @ np.abs(self._view_in.axes[0, :2])).max())
         half = max(0.5 * (high - low), wide * self.height / self.width, LEAST_HALF_HEIGHT)
         self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)
         self._centre = low + GROUND_LINE * half
@@ -103,7 +138,8 @@ class Scene:
         target = self._target()
         camera = mujoco.MjvCamera()
         camera.lookat, camera.distance = target, self._distance
-        camera.azimuth, camera.elevation = 90.0, np.degrees(ELEVATION)
+        camera.azimuth = np.degrees(self._view_in.azimuth)
+        camera.elevation = np.degrees(self._view_in.elevation)
         everything = mujoco.mjtCatBit.mjCAT_ALL
         mujoco.mjv_updateScene(
             self.model, self._data, self._option, None, camera, everything, self._view
@@ -119,7 +155,7 @@ class Scene:
         empty = depth[::-1] >= 1.0
         return (
             np.where(empty[..., None], self._sky, picture[::-1]),
-            Camera(target, self._distance, self.width, self.height),
+            Camera(self._view_in, target, self._distance, self.width, self.height),
         )
 
     @property
@@ -143,8 +179,8 @@ class Scene:
         mujoco.mj_comPos(self.model, self._data)
         mujoco.mj_camlight(self.model, self._data)
 
-    def _outline(self) -> tuple[float, float, float, float]:
-        """Left, right, bottom and top of the character [m]."""
+    def _outline(self) -> tuple[Array, Array]:
+        """Least and greatest x, y and z of the character [m]."""
         size, axis = self.model.geom_size, self._data.geom_xmat[:, 2::3]
         capsule = self.model.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
         reach = np.where(
@@ -154,12 +190,12 @@ class Scene:
         )[self._limbs]
         low = (self._data.geom_xpos[self._limbs] - reach).min(axis=0)
         high = (self._data.geom_xpos[self._limbs] + reach).max(axis=0)
-        return float(low[0]), float(high[0]), float(low[2]), float(high[2])
+        return np.asarray(low), np.asarray(high)
 
     def _target(self) -> Array:
         """Above the ground, in the middle of the character; its height does not follow."""
-        left, right, _, _ = self._outline()
-        x, y = 0.5 * (left + right), self._data.subtree_com[1, 1]
+        least, most = self._outline()
+        x, y = 0.5 * (least[0] + most[0]), self._data.subtree_com[1, 1]
         return np.array([x, y, self.ground(x, y) + self._centre])
 
     def _add_discs(self) -> None:
@@ -239,9 +275,9 @@ def _shade_left(model: mujoco.MjModel) -> None:
     model.geom_rgba[shapes.left_geoms(model), :3] *= shapes.LEFT_SHADE
 
 
-def _gradient(width: int, height: int) -> Pixels:
+def _gradient(view: View, width: int, height: int) -> Pixels:
     """The sky: blue above, as pale at the horizon as the ground fades to."""
-    horizon = 0.5 - 0.5 * tan(-ELEVATION) / tan(0.5 * FIELD_OF_VIEW)
+    horizon = max(0.5 - 0.5 * tan(-view.elevation) / tan(0.5 * FIELD_OF_VIEW), 1e-3)
     down = np.clip(np.linspace(0.0, 1.0 / horizon, height), 0.0, 1.0)[:, None, None]
     sky = (1.0 - down) * np.array(SKY_TOP) + down * np.array(SKY_LOW)
     return np.broadcast_to(np.uint8(np.round(255.0 * sky)), (height, width, 3))
