@@ -20,7 +20,7 @@ class State:
         position: (nq,) generalised position [m, quaternion, rad].
         velocity: (nv,) generalised velocity [m/s, rad/s].
         momentum: rotation indices and centre of mass.
-        contacts: contacts with the ground.
+        contacts: contacts with the ground that control sees.
         lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
         data: the MuJoCo data behind all this. What is read from it, and the properties
             below, hold until the physics steps.
@@ -57,7 +57,7 @@ def read(model: Model, data: mujoco.MjData) -> State:
         position=data.qpos.copy(),
         velocity=data.qvel.copy(),
         momentum=read_momentum(model.mj, data),
-        contacts=read_contacts(model.mj, data),
+        contacts=read_contacts(model.mj, data, model.touch, model.look_ahead),
         lateral_axis=axis / np.sqrt(axis @ axis),
         data=data,
     )

@@ -108,6 +108,9 @@ def simulate(
             last_fallback = decision.reasons[-1]
             buffer.add_event(state.time, last_fallback)
         realised = stepper.advance(data, decision.torque, state.contacts)
+        remark = stepper.remark()
+        if remark:
+            buffer.add_event(state.time, remark)
         record(buffer, i, state, now, behaviour.phase(now), decision, realised)
         progress()
         if stop(state, now):

@@ -1,0 +1,115 @@
+"""Complementarity with box friction by projected Gauss-Seidel: in numpy, and the same in C.
+
+Row velocities are w = A p + b for impulses p. A unilateral row (a contact's normal, a joint
+limit) wants 0 <= p and 0 <= w, one of them zero. A friction row belongs to a normal row n and
+wants w = 0 with |p| <= mu p_n, or |p| = mu p_n against w. [Brown2013] eq. 8, after [Erleben2007].
+"""
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rotctl.rotations import Array
+
+LIBRARY = Path(__file__).with_name("_pgs.so")
+INTERFACE = 1  # of pgs.c
+NO_NORMAL = -1
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of one problem.
+
+    Attributes:
+        A: (n, n) symmetric, positive on its diagonal [1/kg].
+        b: (n,) velocities without impulses, less the wanted ones [m/s].
+        normal: (n,) the normal row that bounds a friction row; `NO_NORMAL` for others.
+        friction: (n,) mu of friction rows [-].
+    """
+
+    A: Array
+    b: Array
+    normal: NDArray[np.int32]
+    friction: Array
+
+
+@dataclass(frozen=True)
+class Impulses:
+    """A solution, or as far as the sweeps came.
+
+    Attributes:
+        p: (n,) [N s].
+        sweeps: made.
+        residual: largest velocity that one more projection of a row would change [m/s].
+    """
+
+    p: Array
+    sweeps: int
+    residual: float
+
+
+Solve = Callable[[Rows, int, float], Impulses]
+
+
+def solve(rows: Rows, sweeps: int, tolerance: float) -> Impulses:
+    """Sweep over the rows from p = 0 until none changes by more than `tolerance` [m/s]."""
+    A, p = rows.A, np.zeros(len(rows.b))
+    diagonal = A.diagonal()
+    sweep, change = 0, np.inf
+    while sweep < sweeps and not change <= tolerance:
+        change = 0.0
+        for i in range(len(p)):
+            x = _projected(rows, p, i)
+            change = max(change, abs(x - p[i]) * diagonal[i])
+            p[i] = x
+        sweep += 1
+    last = np.array([_projected(rows, p, i) for i in range(len(p))])
+    return Impulses(p, sweep, float(np.max(np.abs(last - p) * diagonal, initial=0.0)))
+
+
+def _projected(rows: Rows, p: Array, i: int) -> float:
+    """Row i's impulse that takes its velocity away, between its bounds."""
+    x = p[i] - (rows.A[i] @ p + rows.b[i]) / rows.A[i, i]
+    if rows.normal[i] == NO_NORMAL:
+        return max(x, 0.0)
+    most = rows.friction[i] * p[rows.normal[i]]
+    return min(max(x, -most), most)
+
+
+def solve_compiled(rows: Rows, sweeps: int, tolerance: float) -> Impulses:
+    """As `solve`, in C; `library()` must be there."""
+    n, p, residual = len(rows.b), np.zeros(len(rows.b)), ctypes.c_double()
+    arrays = (rows.A, rows.b, rows.normal, rows.friction)
+    kept = [np.ascontiguousarray(array) for array in arrays]
+    done = library().rotctl_pgs(  # type: ignore[union-attr]
+        n,
+        *(array.ctypes.data for array in kept),
+        sweeps,
+        tolerance,
+        p.ctypes.data,
+        ctypes.byref(residual),
+    )
+    return Impulses(p, done, residual.value)
+
+
+@lru_cache(maxsize=1)
+def library() -> ctypes.CDLL | None:
+    """The built library; None where there is none, or it was built from other source."""
+    try:
+        found = ctypes.CDLL(str(LIBRARY))
+        interface = found.rotctl_pgs_interface()
+    except (OSError, AttributeError):
+        return None
+    found.rotctl_pgs.argtypes = [
+        ctypes.c_int,
+        *[ctypes.c_void_p] * 4,
+        ctypes.c_int,
+        ctypes.c_double,
+        *[ctypes.c_void_p] * 2,
+    ]
+    return found if interface == INTERFACE else None
