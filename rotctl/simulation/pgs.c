@@ -5,14 +5,15 @@
 // Changes with the arguments below, so that a library built from other source is refused.
 int rotctl_pgs_interface(void) { return 1; }
 
+// Comparisons are written so that what is not a number passes through them.
 static double projected(int i, int n, const double* A, const double* b, const int* normal,
                         const double* friction, const double* p) {
   double w = b[i];
   for (int j = 0; j < n; j++) w += A[i * n + j] * p[j];
   double x = p[i] - w / A[i * n + i];
-  if (normal[i] < 0) return fmax(x, 0);
+  if (normal[i] < 0) return x < 0 ? 0 : x;
   double most = friction[i] * p[normal[i]];
-  return fmin(fmax(x, -most), most);
+  return x > most ? most : x < -most ? -most : x;
 }
 
 int rotctl_pgs(int n, const double* A, const double* b, const int* normal,
