@@ -20,7 +20,7 @@ class State:
         position: (nq,) generalised position [m, quaternion, rad].
         velocity: (nv,) generalised velocity [m/s, rad/s].
         momentum: rotation indices and centre of mass.
-        contacts: contacts with the ground that control sees.
+        contacts: contacts with the ground.
         lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
         data: the MuJoCo data behind all this. What is read from it, and the properties
             below, hold until the physics steps.

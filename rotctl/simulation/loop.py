@@ -108,11 +108,11 @@ def simulate(
             last_fallback = decision.reasons[-1]
             buffer.add_event(state.time, last_fallback)
         realised = stepper.advance(data, decision.torque, state.contacts)
+        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        progress()
         remark = stepper.remark()
         if remark:
             buffer.add_event(state.time, remark)
-        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
-        progress()
         if stop(state, now):
             buffer = buffer.trimmed(i + 1)
             break
