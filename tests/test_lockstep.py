@@ -1,4 +1,4 @@
-"""Lockstep physics against Newton and Euler, sliding theory and MuJoCo's own account of contacts."""
+"""Lockstep physics against Newton and Euler, sliding theory and MuJoCo's reading of its forces."""
 
 import json
 from dataclasses import replace
@@ -253,7 +253,7 @@ def test_a_joint_stops_at_its_limit_and_holds_there(settings, side):
 
 
 def test_a_joint_faster_than_the_margin_is_taken_back(settings):
-    """At 30 rad/s a joint passes its limit between two steps; it comes back, no faster than told."""
+    """At 30 rad/s a joint passes its limit between two steps; it comes back, but slowly."""
     mj, data, stepper = plain(HINGE, replace(settings, gravity=(0.0, 0.0, 0.0)))
     data.qvel[0], past = 30.0, []
     for _ in range(60):

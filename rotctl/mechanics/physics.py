@@ -99,6 +99,7 @@ class LockstepPhysics:
         push_out, limit_push_out: fastest correction of contacts [m/s] and limits [rad/s].
         sweeps: projected Gauss-Seidel stops after so many, whatever is left.
         tolerance: it stops earlier where a sweep changes no row by more [m/s].
+        friction_follow: how far a friction bound goes towards mu p_N in a sweep [-].
         alarm: a residual above this becomes an event of the log [m/s].
         backend: `compiled` takes the C solver where it is built, `reference` numpy's.
         touch: a contact nearer than this is there for the controller [m].
@@ -117,6 +118,7 @@ class LockstepPhysics:
     limit_push_out: NonNegative
     sweeps: Some
     tolerance: NonNegative
+    friction_follow: Annotated[Positive, Field(le=1)]
     alarm: Positive
     backend: Literal["compiled", "reference"]
     touch: NonNegative

@@ -91,7 +91,8 @@ class LockstepStepper:
             solved = np.empty_like(jacobian)
             mujoco.mj_solveM(mj, data, solved, jacobian)
             rows = self._rows(data, jacobian, solved, velocity)
-            impulses = self._solve(rows, self._settings.sweeps, self._settings.tolerance)
+            chosen = self._settings
+            impulses = self._solve(rows, chosen.sweeps, chosen.tolerance, chosen.friction_follow)
             data.efc_force[:] = impulses.p / h
             velocity += impulses.p @ solved
             self.solved.append(impulses)
@@ -103,7 +104,7 @@ class LockstepStepper:
         n, contact = data.nefc, data.contact
         normal = np.full(n, pgs.NO_NORMAL, dtype=np.int32)
         friction = np.zeros(n)
-        sliding = contact.dim == 3
+        sliding = (contact.dim == 3) & (contact.efc_address >= 0)
         for tangent in (1, 2):
             row = contact.efc_address[sliding] + tangent
             normal[row] = row - tangent

@@ -3,6 +3,10 @@
 Row velocities are w = A p + b for impulses p. A unilateral row (a contact's normal, a joint
 limit) wants 0 <= p and 0 <= w, one of them zero. A friction row belongs to a normal row n and
 wants w = 0 with |p| <= mu p_n, or |p| = mu p_n against w. [Brown2013] eq. 8, after [Erleben2007].
+
+The plain method bounds friction by the normal impulse of the moment. In about one state of 25 of
+a roll it then goes round in circles for ever, several dm/s from a solution that does exist. A
+bound that goes only part of the way, `follow`, towards each new mu p_n finds it.
 """
 
 import ctypes
@@ -17,7 +21,7 @@ from numpy.typing import NDArray
 from rotctl.rotations import Array
 
 LIBRARY = Path(__file__).with_name("_pgs.so")
-INTERFACE = 1  # of pgs.c
+INTERFACE = 2  # of pgs.c
 NO_NORMAL = -1
 
 
@@ -53,37 +57,48 @@ class Impulses:
     residual: float
 
 
-Solve = Callable[[Rows, int, float], Impulses]
+Solve = Callable[[Rows, int, float, float], Impulses]
 
 
-def solve(rows: Rows, sweeps: int, tolerance: float) -> Impulses:
-    """Sweep over the rows from p = 0 until none changes by more than `tolerance` [m/s]."""
-    A, p = rows.A, np.zeros(len(rows.b))
-    diagonal = A.diagonal()
+def solve(rows: Rows, sweeps: int, tolerance: float, follow: float) -> Impulses:
+    """Sweep over the rows from p = 0 until none changes by more than `tolerance` [m/s].
+
+    Args:
+        sweeps: at most so many.
+        follow: how far a friction bound goes towards mu p_n in a sweep; 1 is the plain method.
+    """
+    n = len(rows.b)
+    p, bound, diagonal = np.zeros(n), np.zeros(n), rows.A.diagonal()
     sweep, change = 0, np.inf
     while sweep < sweeps and not change <= tolerance:
         change = 0.0
-        for i in range(len(p)):
-            x = _projected(rows, p, i)
+        for i in range(n):
+            bound[i] += follow * (_coulomb(rows, p, i) - bound[i])
+            x = _projected(rows, p, i, bound[i])
             change = max(change, abs(x - p[i]) * diagonal[i])
             p[i] = x
         sweep += 1
-    last = np.array([_projected(rows, p, i) for i in range(len(p))])
+    last = np.array([_projected(rows, p, i, _coulomb(rows, p, i)) for i in range(n)])
     return Impulses(p, sweep, float(np.max(np.abs(last - p) * diagonal, initial=0.0)))
 
 
-def _projected(rows: Rows, p: Array, i: int) -> float:
+def _coulomb(rows: Rows, p: Array, i: int) -> float:
+    """What bounds row i's impulse if it is a friction row [N s]."""
+    return 0.0 if rows.normal[i] == NO_NORMAL else float(rows.friction[i] * p[rows.normal[i]])
+
+
+def _projected(rows: Rows, p: Array, i: int, most: float) -> float:
     """Row i's impulse that takes its velocity away, between its bounds."""
     x = p[i] - (rows.A[i] @ p + rows.b[i]) / rows.A[i, i]
     if rows.normal[i] == NO_NORMAL:
         return max(x, 0.0)
-    most = rows.friction[i] * p[rows.normal[i]]
     return min(max(x, -most), most)
 
 
-def solve_compiled(rows: Rows, sweeps: int, tolerance: float) -> Impulses:
+def solve_compiled(rows: Rows, sweeps: int, tolerance: float, follow: float) -> Impulses:
     """As `solve`, in C; `library()` must be there."""
-    n, p, residual = len(rows.b), np.zeros(len(rows.b)), ctypes.c_double()
+    n, residual = len(rows.b), ctypes.c_double()
+    p, bound = np.zeros(n), np.zeros(n)
     arrays = (rows.A, rows.b, rows.normal, rows.friction)
     kept = [np.ascontiguousarray(array) for array in arrays]
     done = library().rotctl_pgs(  # type: ignore[union-attr]
@@ -91,7 +106,9 @@ def solve_compiled(rows: Rows, sweeps: int, tolerance: float) -> Impulses:
         *(array.ctypes.data for array in kept),
         sweeps,
         tolerance,
+        follow,
         p.ctypes.data,
+        bound.ctypes.data,
         ctypes.byref(residual),
     )
     return Impulses(p, done, residual.value)
@@ -109,7 +126,7 @@ def library() -> ctypes.CDLL | None:
         ctypes.c_int,
         *[ctypes.c_void_p] * 4,
         ctypes.c_int,
-        ctypes.c_double,
-        *[ctypes.c_void_p] * 2,
+        *[ctypes.c_double] * 2,
+        *[ctypes.c_void_p] * 3,
     ]
     return found if interface == INTERFACE else None
