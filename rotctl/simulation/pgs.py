@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from rotctl.rotations import Array
 
 LIBRARY = Path(__file__).with_name("_pgs.so")
-INTERFACE = 2  # of pgs.c
+INTERFACE = 3  # of pgs.c
 NO_NORMAL = -1
 
 
@@ -67,30 +67,28 @@ def solve(rows: Rows, sweeps: int, tolerance: float, follow: float) -> Impulses:
         sweeps: at most so many.
         follow: how far a friction bound goes towards mu p_n in a sweep; 1 is the plain method.
     """
-    n = len(rows.b)
-    p, bound, diagonal = np.zeros(n), np.zeros(n), rows.A.diagonal()
+    A, w, diagonal = rows.A, rows.b.copy(), rows.A.diagonal()
+    p, bound = np.zeros(len(w)), np.zeros(len(w))
     sweep, change = 0, np.inf
     while sweep < sweeps and not change <= tolerance:
         change = 0.0
-        for i in range(n):
-            bound[i] += follow * (_coulomb(rows, p, i) - bound[i])
-            x = _projected(rows, p, i, bound[i])
-            change = max(change, abs(x - p[i]) * diagonal[i])
-            p[i] = x
+        for i, normal in enumerate(rows.normal):
+            if normal != NO_NORMAL:
+                bound[i] += follow * (rows.friction[i] * p[normal] - bound[i])
+            step = _projected(p[i] - w[i] / diagonal[i], normal, bound[i]) - p[i]
+            if step != 0.0:
+                w += step * A[i]
+                change = max(change, abs(step) * diagonal[i])
+                p[i] += step
         sweep += 1
-    last = np.array([_projected(rows, p, i, _coulomb(rows, p, i)) for i in range(n)])
+    most = np.where(rows.normal == NO_NORMAL, 0.0, rows.friction * p[rows.normal])
+    last = [_projected(*row) for row in zip(p - w / diagonal, rows.normal, most, strict=True)]
     return Impulses(p, sweep, float(np.max(np.abs(last - p) * diagonal, initial=0.0)))
 
 
-def _coulomb(rows: Rows, p: Array, i: int) -> float:
-    """What bounds row i's impulse if it is a friction row [N s]."""
-    return 0.0 if rows.normal[i] == NO_NORMAL else float(rows.friction[i] * p[rows.normal[i]])
-
-
-def _projected(rows: Rows, p: Array, i: int, most: float) -> float:
-    """Row i's impulse that takes its velocity away, between its bounds."""
-    x = p[i] - (rows.A[i] @ p + rows.b[i]) / rows.A[i, i]
-    if rows.normal[i] == NO_NORMAL:
+def _projected(x: float, normal: int, most: float) -> float:
+    """A row's impulse brought between its bounds."""
+    if normal == NO_NORMAL:
         return max(x, 0.0)
     return min(max(x, -most), most)
 
@@ -98,7 +96,7 @@ def _projected(rows: Rows, p: Array, i: int, most: float) -> float:
 def solve_compiled(rows: Rows, sweeps: int, tolerance: float, follow: float) -> Impulses:
     """As `solve`, in C; `library()` must be there."""
     n, residual = len(rows.b), ctypes.c_double()
-    p, bound = np.zeros(n), np.zeros(n)
+    p, bound, w = np.zeros((3, n))
     arrays = (rows.A, rows.b, rows.normal, rows.friction)
     kept = [np.ascontiguousarray(array) for array in arrays]
     done = library().rotctl_pgs(  # type: ignore[union-attr]
@@ -109,6 +107,7 @@ def solve_compiled(rows: Rows, sweeps: int, tolerance: float, follow: float) -> 
         follow,
         p.ctypes.data,
         bound.ctypes.data,
+        w.ctypes.data,
         ctypes.byref(residual),
     )
     return Impulses(p, done, residual.value)
@@ -127,6 +126,6 @@ def library() -> ctypes.CDLL | None:
         *[ctypes.c_void_p] * 4,
         ctypes.c_int,
         *[ctypes.c_double] * 2,
-        *[ctypes.c_void_p] * 3,
+        *[ctypes.c_void_p] * 4,
     ]
     return found if interface == INTERFACE else None
