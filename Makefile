@@ -31,7 +31,7 @@ export MKL_NUM_THREADS      := 1
 
 .PHONY: help
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-8s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 .PHONY: run
 run: setup ## simulate a forward roll, with a progress bar; writes the log and a filmstrip into runs/
@@ -60,6 +60,14 @@ lint: setup ## style, layout, types, floors: changes nothing
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# Three starts a row take minutes on two cores: make reproduce QUICK=1
+REPRODUCE := sweeps/reproduce$(if $(QUICK),-quick)
+.PHONY: reproduce
+reproduce: setup ## run Table 1 and build its page, site/index.html (QUICK=1: three starts a row)
+	$(BIN)/rotctl sweep +experiment=table1 $(if $(QUICK),'seed=range(0,3)') \
+		--out $(REPRODUCE)/table1 || [ $$? -eq 1 ] # 1: some run failed to run; the page says so
+	$(BIN)/rotctl report $(REPRODUCE) --out site
+
 .PHONY: bench
 bench: setup ## time the control tick
 	$(BIN)/rotctl bench
@@ -73,7 +81,7 @@ lock: $(UV) ## remake requirements.lock from pyproject.toml (hashed, free of ind
 	@! grep -nE '://|index-url|find-links' requirements.lock
 
 .PHONY: clean
-clean: ## remove the environment, caches and builds (runs/ stays)
+clean: ## remove the environment, caches and builds (runs/, sweeps/ and site/ stay)
 	rm -rf $(VENV) .tools dist build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 	find rotctl tests experiments -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
 

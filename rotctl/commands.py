@@ -4,10 +4,23 @@ import argparse
 import os
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rotctl.errors import InputError
-from rotctl.wording import described, one_line, printable, readable
+from rotctl.wording import (
+    clock_warnings,
+    described,
+    imported,
+    one_line,
+    printable,
+    readable,
+)
 
+if TYPE_CHECKING:
+    from rotctl.mechanics.model import Model
+    from rotctl.motion import Clip
+
+CLIP_FRAMES = 12  # of the filmstrip beside a clip
 OVERHEAD_RUNS = 1000  # of a sweep that rotctl bench times
 
 
@@ -16,7 +29,8 @@ def run(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.config import load
-    from rotctl.run import LOG_NAME, run
+    from rotctl.log import LOG_NAME
+    from rotctl.run import run
 
     config = load(arguments.overrides)
     steps = round(config.duration * config.controller.rate)
@@ -174,8 +188,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
+    from rotctl.results import experiments
     from rotctl.sweep.engines import make_engine
-    from rotctl.sweep.experiments import matrix
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
@@ -185,12 +199,14 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
-    runs = planned(points(matrix(arguments.overrides)))
+    runs = planned(points(experiments.matrix(arguments.overrides)))
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         if arguments.dry_run:
             print(without_running(runs, arguments.out, engine.workers))
             return 0
         with locked(arguments.out):
+            if experiment := experiments.named(arguments.overrides):
+                experiments.copy_into(arguments.out, experiment)
             watched = None if not arguments.quiet else True  # None: only on a terminal
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as bar:
                 there = plan(runs, arguments.out, arguments.strict, bar.update)
@@ -207,8 +223,8 @@ def sweep(arguments: argparse.Namespace) -> int:
 
 def summarise(arguments: argparse.Namespace) -> int:
     """Make tables of the runs below a folder."""
-    from rotctl.sweep.groups import grouped, markdown, written
-    from rotctl.sweep.table import table
+    from rotctl.results.groups import grouped, markdown, written
+    from rotctl.results.table import table
 
     found = table(arguments.folder)
     groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
@@ -218,6 +234,30 @@ def summarise(arguments: argparse.Namespace) -> int:
     for note in [*found.notes, *groups.notes]:
         print(one_line(note), file=sys.stderr)
     return 0
+
+
+def report(arguments: argparse.Namespace) -> int:
+    """Make the pages on many runs, and compare their claims with those of an earlier report."""
+    from tqdm import tqdm
+
+    from rotctl.report.site import against
+    from rotctl.report.site.build import report
+
+    # Before it is replaced, should it be the same folder.
+    old = against.read(arguments.against) if arguments.against else None
+    with tqdm(desc="report", unit="part", leave=False, disable=None, delay=0.2) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        claims = report(arguments.folder, arguments.out, progress)
+    print(arguments.out / "index.html")
+    if old is None:
+        return 0
+    found = against.changes(old, claims)
+    print(found.text)
+    return 1 if found.worse else 0
 
 
 def tune(arguments: argparse.Namespace) -> int:
@@ -248,3 +288,94 @@ def tune(arguments: argparse.Namespace) -> int:
     print(result.comparison(found), *written, sep="\n")
     print(result.how_to_judge(found, written, arguments.out))
     return 0
+
+
+def import_motion(arguments: argparse.Namespace) -> int:
+    """Make a clip of captured motion."""
+    from tqdm import tqdm
+
+    from rotctl.motion.importing import import_motion, read_capture
+
+    model = _model(arguments.character)
+    capture = read_capture(arguments.file, arguments.skeleton, arguments.rate)
+    with tqdm(desc="retarget", unit="frame", leave=False, disable=None, delay=0.2) as bar:
+
+        def progress(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        made = import_motion(
+            model,
+            arguments.character,
+            arguments.file,
+            capture,
+            arguments.cycle,
+            arguments.symmetric,
+            arguments.licence,
+            progress,
+        )
+    out = _clip_written(arguments, made.clip)
+    print(printable(imported(made)))
+    for warning in clock_warnings(made.flights):
+        print(f"rotctl: warning: {warning}", file=sys.stderr)
+    return _clip_shown(arguments, model, made.clip, out)
+
+
+def author_motion(arguments: argparse.Namespace) -> int:
+    """Make a clip of key poses."""
+    from rotctl.motion.author import author, load_keys
+
+    model = _model(arguments.character)
+    clip = author(model, load_keys(arguments.file), arguments.character)
+    return _clip_shown(arguments, model, clip, _clip_written(arguments, clip))
+
+
+def preview_motion(arguments: argparse.Namespace) -> int:
+    """Draw a clip."""
+    from rotctl.motion import load_clip
+
+    _draw_clip(
+        _model(arguments.character), load_clip(arguments.clip), arguments.out, arguments.frames
+    )
+    print(arguments.out)
+    return 0
+
+
+def _model(character: str) -> "Model":
+    from rotctl.config import load
+    from rotctl.scenario import model_of
+
+    return model_of(load([f"character={character}"]))
+
+
+def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
+    """Write a clip; returns where it is."""
+    from rotctl.motion.writing import text
+    from rotctl.report.files import replace
+
+    out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
+    replace(out, text(clip).encode())
+    return out
+
+
+def _clip_shown(arguments: argparse.Namespace, model: "Model", clip: "Clip", out: Path) -> int:
+    """Say where a clip is; draw it if that is wanted and this machine can."""
+    print(f"clip       {out}")
+    if arguments.filmstrip:
+        try:
+            _draw_clip(model, clip, out.with_suffix(".png"), CLIP_FRAMES)
+        except InputError as error:
+            print(f"rotctl: no filmstrip: {error}", file=sys.stderr)
+        else:
+            print(f"filmstrip  {out.with_suffix('.png')}")
+    return 0
+
+
+def _draw_clip(model: "Model", clip: "Clip", out: Path, frames: int) -> None:
+    from rotctl.motion.preview import preview
+    from rotctl.report.motion_strip import motion_strip
+
+    states, phases = preview(model, clip, frames)
+    captions = [f"{phase:.2f} rev" for phase in phases]
+    note = clip.description or clip.source
+    motion_strip(model.mjcf, states, captions, clip.name, note, out)

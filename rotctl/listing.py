@@ -6,7 +6,7 @@ import yaml
 
 from rotctl.errors import InputError
 
-_NO_GROUPS = {"tune"}  # folders of conf/ that no config is composed from
+_NO_GROUPS = {"motion", "tune"}  # folders of conf/ that no config is composed from
 
 
 def conf_dir() -> Path:

@@ -15,15 +15,18 @@ examples:
   rotctl run controller.weights.angular_momentum=8
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
+  rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen
   rotctl show behaviour=forward_roll_1            the whole config, with these choices
   rotctl replay runs/<run id>/run.h5              a page that plays it in the browser
   rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
   rotctl plot runs/<run id>/run.h5 --out roll.pdf
   rotctl inspect runs/<run id>/run.h5             what is in a log
+  rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, or a run of a sweep could not be run, 2 bad input, 130 interrupted
+the solver broke down, a run of a sweep could not be run, or a claim got worse (rotctl report
+--against), 2 bad input, 130 interrupted
 """
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
@@ -54,6 +57,14 @@ def _folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")
     return Path(text)
+
+
+def _seconds(text: str) -> tuple[float, float]:
+    start, _, end = text.partition(":")
+    try:
+        return float(start), float(end)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: valid: START:END in seconds") from None
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -208,6 +219,26 @@ def _parser() -> argparse.ArgumentParser:
     )
     summarise.set_defaults(command=commands.summarise)
 
+    report = chosen.add_parser(
+        "report",
+        help="pages on many runs: claims with verdicts, pictures, replays",
+        description="Make a static folder of pages out of the runs below DIR, a sweep or several: "
+        "the claims of their experiments with verdicts, pictures and replays of the median and "
+        "the worst run of each row, charts, and where it all comes from. Also claims.csv, "
+        "junit.xml and summary.md. Nothing is simulated again.",
+    )
+    report.add_argument("folder", type=Path, metavar="DIR")
+    report.add_argument(
+        "--out", type=_folder, default=Path("site"), help="folder for the pages [%(default)s]"
+    )
+    report.add_argument(
+        "--against",
+        type=Path,
+        metavar="OLD",
+        help="an earlier report: print which verdicts changed, exit 1 if one got worse",
+    )
+    report.set_defaults(command=commands.report)
+
     tune = chosen.add_parser(
         "tune",
         help="search for poses or gains over many starts",
@@ -228,9 +259,69 @@ def _parser() -> argparse.ArgumentParser:
     tune.add_argument("--seed", type=int, default=0, metavar="S", help="of the search [0]")
     tune.set_defaults(command=commands.tune)
 
+    importing = chosen.add_parser(
+        "import-motion",
+        help="make a reference clip of captured motion",
+        description="Read a captured roll (BVH, ASF/AMC or DeepMimic), put it on one of our "
+        "characters, cut out one cycle and write it as a clip over the phase of the roll. Says "
+        "how well each segment follows, how fast the body turns and how well the loop closes.",
+    )
+    importing.add_argument("file", type=Path, metavar="FILE", help=".bvh, .amc, .txt or .json")
+    importing.add_argument(
+        "--cycle",
+        type=_seconds,
+        metavar="START:END",
+        help="of the roll [s] [the one that closes best]",
+    )
+    importing.add_argument(
+        "--skeleton", type=Path, metavar="FILE.asf", help="of an .amc [the .asf of its name]"
+    )
+    importing.add_argument("--rate", type=float, metavar="HZ", help="frame rate [the file's]")
+    importing.add_argument(
+        "--symmetric", action="store_true", help="the mean of the roll and its mirror image"
+    )
+    importing.add_argument("--licence", default="", metavar="TEXT", help="the source's terms")
+    importing.set_defaults(command=commands.import_motion)
+
+    authoring = chosen.add_parser(
+        "author-motion",
+        help="make a reference clip of key poses",
+        description="Make a clip of the key poses of one cycle, as in conf/motion/keys/: smooth "
+        "between them, its phase linear in how far the body has turned.",
+    )
+    authoring.add_argument("file", type=Path, metavar="KEYS.yaml")
+    authoring.set_defaults(command=commands.author_motion)
+
+    for command in (importing, authoring):
+        command.add_argument(
+            "--out", type=_folder, required=True, metavar="CLIP.yaml", help="the clip"
+        )
+        command.add_argument(
+            "--filmstrip", action="store_true", help="also draw CLIP.png beside it"
+        )
+
+    preview = chosen.add_parser(
+        "preview-motion",
+        help="draw a reference clip",
+        description="Draw one cycle of a clip as it rolls over the ground; nothing is simulated.",
+    )
+    preview.add_argument("clip", metavar="CLIP", help="a name in conf/motion/, or a .yaml file")
+    preview.add_argument("--out", type=Path, required=True, metavar="OUT.png")
+    preview.add_argument(
+        "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
+    )
+    preview.set_defaults(command=commands.preview_motion)
+
+    for command in (importing, authoring, preview):
+        command.add_argument(
+            "--character", default="adult", metavar="NAME", help="whose joints [%(default)s]"
+        )
+
     for command in chosen.choices.values():
         command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
-    for command in (render, replay, plot):
+    for command in (importing, authoring):
+        command.set_defaults(interrupted="an unfinished clip is not written")
+    for command in (render, replay, plot, preview, report):
         command.set_defaults(interrupted="an unfinished picture is not written")
     for command in (sweep, tune):
         command.set_defaults(interrupted="the same command does what is left")

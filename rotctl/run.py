@@ -15,14 +15,13 @@ import numpy as np
 
 from rotctl.config import Config, to_yaml
 from rotctl.errors import InputError, LogError
-from rotctl.log import RunLog, TrajectoryBuffer, collect, encode_run, write_log
+from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
 from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.state import State
 from rotctl.metrics.rolling import RollingMetrics, failure_reason, measure
 from rotctl.scenario import Scenario, build
 from rotctl.simulation.loop import simulate
 
-LOG_NAME = "run.h5"
 SUMMARY_NAME = "summary.json"
 Summary = dict[str, Any]
 
@@ -217,6 +216,7 @@ def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) 
         "heading_error_end": metrics.heading_error_end,
         "lateral_drift": metrics.lateral_drift,
         "longest_stall": metrics.longest_stall,
+        "airborne": metrics.airborne,
         "torque_p99_fraction": metrics.torque_p99_fraction,
         "solver_failures": metrics.solver_failures,
         "real_time_factor": metrics.duration / wall,

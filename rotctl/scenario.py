@@ -57,7 +57,12 @@ def build(config: Config) -> Scenario:
         ),
         controller=Controller(model, control),
         stepper=_stepper(config.physics, model),
-        start=starts.draw(config.start, np.random.default_rng(config.seed)),
+        start=starts.draw(
+            config.start,
+            model,
+            config.behaviour.roll_about,
+            np.random.default_rng(config.seed),
+        ),
         run_id=run_id(config, model),
     )
 

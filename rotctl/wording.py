@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rotctl.log import RunLog
+    from rotctl.motion.flight import Flight
+    from rotctl.motion.importing import Imported
 
 
 def one_line(text: str) -> str:
@@ -63,3 +65,44 @@ def described(log: "RunLog") -> str:
     if len(events) > 20:
         lines.append(f"  ... and {len(events) - 20} more")
     return "\n".join(lines)
+
+
+def imported(made: "Imported") -> str:
+    """How well a captured roll became a clip."""
+    import numpy as np
+
+    clip, degrees = made.clip, np.degrees(made.error)
+    kind = {"left": "forward roll", "right": "backward roll", "head": "log roll"}[clip.roll_about]
+    gap = np.abs(made.closed.gap)
+    lines = [f"{kind}, {made.start:.3f} to {made.end:.3f} s of the file"]
+    if made.mirrored:
+        lines.append("  left and right are exchanged, so that the head is to the left of the way")
+    lines.append("  segment         error [deg] median   95 %")
+    for name, middle, high in zip(
+        made.segments, np.median(degrees, axis=0), np.percentile(degrees, 95, axis=0), strict=True
+    ):
+        lines.append(f"  {name:22} {middle:11.1f} {high:6.1f}")
+    lines += [
+        f"  turns        {made.span:.2f} rev in {made.end - made.start:.2f} s, "
+        f"{made.span / (made.end - made.start):.2f} rev/s, {made.speed:.2f} m/s",
+        f"  turns back   {100 * made.closed.backwards:.0f} % of the time",
+        f"  loop gap     {np.sqrt(np.mean(gap**2)):.2f} rad rms, {gap.max():.2f} rad at most "
+        f"({made.joint_names[int(gap.argmax())]}), pelvis "
+        f"{np.degrees(made.closed.pelvis_gap):.0f} deg; spread over the cycle",
+    ]
+    lines += [
+        f"  flight       {flight.start:.2f} to {flight.end:.2f} s falls at {flight.fall:.1f} m/s2"
+        for flight in made.flights
+    ]
+    return "\n".join(lines)
+
+
+def clock_warnings(flights: "list[Flight]") -> list[str]:
+    """What flights say against the clock of a capture."""
+    return [
+        f"the flight from {flight.start:.2f} to {flight.end:.2f} s falls at {flight.fall:.1f} "
+        f"m/s2, not 9.81: the file's clock runs {flight.haste:.2f} times as fast as the motion "
+        "did; see --rate"
+        for flight in flights
+        if not flight.plausible
+    ]

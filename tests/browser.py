@@ -11,6 +11,8 @@ from pathlib import Path
 
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 40.0  # [s] for one answer; software OpenGL on a busy machine takes some
+REPLAY_READY = "document.body && document.body.dataset.ready === 'true'"
+PAGE_READY = "location.protocol === 'file:' && document.readyState === 'complete'"
 _LOCAL = ("file:", "data:", "blob:", "about:")
 
 
@@ -85,8 +87,10 @@ class Browser:
         os.close(self._read)
         self._folder.cleanup()
 
-    def open(self, path, width=900, height=520, dark=False, phone=False, fragment=""):
-        """Open a file and wait until it says that it is ready; returns seconds taken."""
+    def open(
+        self, path, width=900, height=520, dark=False, phone=False, fragment="", ready=REPLAY_READY
+    ):
+        """Open a file and wait until an expression is true in it; returns seconds taken."""
         self.complaints.clear()
         self._asked.clear()
         self._call(
@@ -101,7 +105,7 @@ class Browser:
         self._call("Page.navigate", url="about:blank")
         begin = time.monotonic()
         self._call("Page.navigate", url=Path(path).resolve().as_uri() + fragment)
-        self.wait("document.body && document.body.dataset.ready === 'true'")
+        self.wait(ready)
         return time.monotonic() - begin
 
     @property

@@ -48,6 +48,7 @@ class World:
                 "physics.substeps=4",
                 "physics.cone=elliptic",
                 "start=tucked",
+                "character.exclude_from_control=[head]",  # so that leaving one out is seen too
             ]
         )
         self.scenario = build(self.config)

@@ -152,7 +152,7 @@ def test_overrides_and_options_may_be_mixed(cli, made):
     [
         ([*RUN, "controller.solver=foo"], "rotctl: controller.solver='foo' is unknown; valid: "
          "boxqp, osqp, qpsolvers:<name> (for example qpsolvers:daqp)"),
-        ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: rest, symmetric, '
+        ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: rest, still, symmetric, '
          "tucked"),
         ([*RUN, "seed=1,2"], "rotctl: override 'seed=1,2': run takes one value for seed; "
          "rotctl sweep takes many"),
@@ -342,7 +342,7 @@ def test_inspect_shows_everything_and_checks_it(cli, made):
     out, row, log = made
     code, stdout, stderr = cli("inspect", log)
     assert (code, stderr) == (0, "")
-    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 1\n")
+    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 2\n")
     for text in ("trajectory/qpos", "[kg m2/s]", "outcome", "success", "git_commit", "machine"):
         assert text in stdout
     assert stdout.endswith("\nintegrity  complete, checksums match\n")

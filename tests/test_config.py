@@ -89,11 +89,11 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ("~seed", "seed: missing, it cannot be left out"),
         ("~physics", "physics: missing, it cannot be left out"),
         # Choices.
-        ("start=foo", 'start="foo": no such choice; valid: rest, symmetric, tucked'),
-        ("start=", 'start="": no such choice; valid: rest, symmetric, tucked'),
-        ("start=null", "start=null: no such choice; valid: rest, symmetric, tucked"),
-        ("start=[rest]", 'start=["rest"]: no such choice; valid: rest, symmetric, tucked'),
-        ("start=../start/rest", 'start="../start/rest": no such choice; valid: rest, '
+        ("start=foo", 'start="foo": no such choice; valid: rest, still, symmetric, tucked'),
+        ("start=", 'start="": no such choice; valid: rest, still, symmetric, tucked'),
+        ("start=null", "start=null: no such choice; valid: rest, still, symmetric, tucked"),
+        ("start=[rest]", 'start=["rest"]: no such choice; valid: rest, still, symmetric, tucked'),
+        ("start=../start/rest", 'start="../start/rest": no such choice; valid: rest, still, '
          "symmetric, tucked"),
         # Values: one of each kind here, more below.
         ("seed=a", 'seed="a": must be a valid integer'),

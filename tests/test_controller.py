@@ -155,13 +155,13 @@ def head_stand(world):
     """A state on its head, in the pose of a recorded step, and that step."""
     data = mujoco.MjData(world.mj)
     start = Start(pitch=np.pi, velocity=np.zeros(3), angular_velocity=np.zeros(3))
-    place(world.model, data, start, np.zeros(world.mj.nu))
+    place(world.model, data, start, world.scenario.behaviour.orientation, np.zeros(world.mj.nu))
     data.qpos[2] -= 0.02
     step = replace(world.steps[0], position=data.qpos.copy(), velocity=data.qvel.copy())
     return world.state(step), step
 
 
-def test_the_head_is_never_used(world, steps):
+def test_a_head_held_out_of_control_is_never_used(world, steps):
     head = world.mj.body("head").id
     state, step = head_stand(world)
     on_head = state.contacts.body == head
@@ -174,7 +174,7 @@ def test_the_head_is_never_used(world, steps):
         assert not step.decision.used[on_head].any()
 
 
-def test_a_contact_of_the_head_changes_nothing(world):
+def test_a_contact_held_out_of_control_changes_nothing(world):
     """Blind to it: the same torques as if it were not there."""
     state, step = head_stand(world)
     keep = state.contacts.body != world.mj.body("head").id

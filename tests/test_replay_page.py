@@ -191,6 +191,15 @@ def test_packed_arrays_come_back():
     assert packed["b"][1:] == [None, "</s"]
 
 
+def test_floats_are_rounded_to_half_a_millimetre_and_infinity_stays():
+    values = np.append(np.random.default_rng(0).normal(0.0, 10.0, 1000), [np.inf, np.nan, 1e38])
+    text, block = pack({"a": values})
+    kind, offset, size = json.loads(text)["a"]["$array"]
+    found = np.frombuffer(gzip.decompress(base64.b64decode(block)), "<f4", size, offset)
+    assert 1e-4 < abs(found[:1000] - values[:1000]).max() < 0.25e-3
+    np.testing.assert_array_equal(found[1000:], values[1000:].astype("f4"))
+
+
 # ---------------------------------------------------------------- bad input
 
 

@@ -31,6 +31,7 @@ GOOD = RollingMetrics(
     lateral_drift=0.5,
     longest_stall=0.4,
     stalled_at=2.0,
+    airborne=0.0,
     torque_p99_fraction=0.6,
     solver_failures=0,
 )
@@ -43,7 +44,8 @@ def make_log(steps=600, rate=0.5, speed=0.6, heading=0.0, lateral=0.0):
     log = {
         "trajectory/com": np.outer(time, [speed, lateral, 0.0]) + [2.0, -1.0, 0.5],
         "trajectory/angular_excursion": 2 * np.pi * np.outer(time, [0, rate, 0]) + [9.0, -4.0, 9.0],
-        "trajectory/lateral_axis": np.stack((-np.sin(turn), np.cos(turn), 0 * turn), axis=1),
+        "trajectory/trunk_axis": np.stack((-np.sin(turn), np.cos(turn), 0 * turn), axis=1),
+        "contacts/count": np.ones(steps, dtype=np.int32),
         "trajectory/ctrl": np.zeros((steps, 2)),
         "model/torque_limit": np.array([10.0, 20.0]),
         "solver/status": np.zeros(steps, dtype=np.uint8),
@@ -149,6 +151,13 @@ def test_torque_fraction_is_of_each_joint_s_limit():
     assert measure(log, CRITERIA, 0.5, PERIOD).torque_p99_fraction == pytest.approx(0.5)
     log["trajectory/ctrl"][:, 1] = -18.0
     assert measure(log, CRITERIA, 0.5, PERIOD).torque_p99_fraction == pytest.approx(0.9)
+
+
+def test_airborne_is_the_share_without_contact():
+    log = make_log()
+    log["contacts/count"][100:250] = 0
+    log["contacts/count"][300:] = 7
+    assert measure(log, CRITERIA, 0.5, PERIOD).airborne == pytest.approx(0.25)
 
 
 def test_only_steps_without_any_solver_are_failures():

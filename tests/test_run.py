@@ -29,6 +29,7 @@ SUMMARY_KEYS = [
     "heading_error_end",
     "lateral_drift",
     "longest_stall",
+    "airborne",
     "torque_p99_fraction",
     "solver_failures",
     "real_time_factor",
@@ -330,6 +331,7 @@ def test_a_run_without_a_single_good_state_has_nulls(tmp_path):
         "angular_velocity_mean",
         "speed_mean",
         "heading_error_end",
+        "airborne",
         "torque_p99_fraction",
     }
     assert RunLog.open(result.folder / LOG_NAME).steps == 0

@@ -8,14 +8,18 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl import scenario
+from rotctl.config import load
+from rotctl.errors import InputError
 from rotctl.mechanics.model import lowest_and_highest
-from rotctl.simulation.start import Start, StartSettings, draw, place
+from rotctl.run import in_memory
+from rotctl.simulation.start import Posture, Start, StartSettings, draw, place
 
 STARTS = [
     Start(-0.4, np.array([1.1, -0.2, 0.0]), np.array([0.5, 6.0, -0.7])),
     Start(2.5, np.array([-0.6, 0.1, 0.0]), np.array([0.0, -3.0, 0.3])),
     Start(0.0, np.zeros(3), np.zeros(3)),
 ]
+UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
 RANGES = StartSettings(
     name="test",
     pitch=(-0.6, 0.0),
@@ -34,7 +38,7 @@ def placed(request, world):
     pose = np.random.default_rng(request.param).uniform(low, high)
     data = mujoco.MjData(world.mj)
     data.qpos[:], data.qvel[:], data.time = 7.0, 7.0, 3.0  # leftovers of another run
-    place(world.model, data, STARTS[request.param], pose)
+    place(world.model, data, STARTS[request.param], UPRIGHT, pose)
     return STARTS[request.param], pose, data
 
 
@@ -72,9 +76,9 @@ def test_pose_pitch_and_a_clean_slate(placed):
     assert data.time == 0.0
 
 
-def test_draw_stays_in_its_ranges_and_fills_them():
+def test_draw_stays_in_its_ranges_and_fills_them(world):
     generator = np.random.default_rng(0)
-    drawn = [draw(RANGES, generator) for _ in range(200)]
+    drawn = [draw(RANGES, world.model, "left", generator) for _ in range(200)]
     for values, (low, high) in (
         ([s.pitch for s in drawn], RANGES.pitch),
         ([s.velocity[0] for s in drawn], RANGES.speed_x),
@@ -92,13 +96,94 @@ def test_same_seed_same_state(world):
     def first_state(seed):
         made = scenario.build(replace(world.config, seed=seed, start=RANGES))
         data = mujoco.MjData(made.model.mj)
-        place(made.model, data, made.start, made.behaviour.pose(made.start.pitch))
+        behaviour = made.behaviour
+        place(made.model, data, made.start, behaviour.orientation, behaviour.pose(made.start.pitch))
         return data.qpos.tobytes() + data.qvel.tobytes()
 
     assert first_state(5) == first_state(5)
     assert first_state(5) != first_state(6)
 
 
-def test_an_empty_range_draws_its_value():
+def test_an_empty_range_draws_its_value(world):
     fixed = replace(RANGES, pitch=(-0.3, -0.3))
-    assert draw(fixed, np.random.default_rng(1)).pitch == -0.3
+    assert draw(fixed, world.model, "left", np.random.default_rng(1)).pitch == -0.3
+
+
+# ---------------------------------------------------------------- postures
+
+WAITING = replace(
+    RANGES,
+    scatter=0.1,
+    postures={"left": Posture(pitch=1.0, pose={"hip_y": 1.5, "knee_l": 2.69, "waist_x": -0.2})},
+)
+
+
+def test_a_posture_is_drawn_around_what_it_says(world):
+    generator = np.random.default_rng(0)
+    drawn = [draw(WAITING, world.model, "left", generator) for _ in range(200)]
+    poses = np.array([start.pose for start in drawn])
+    low, high = world.model.joint_range.T
+    wanted = dict.fromkeys(world.model.joint_names, 0.0) | {
+        "hip_y_l": 1.5,
+        "hip_y_r": 1.5,
+        "knee_l": 2.69,
+        "waist_x": -0.2,
+    }
+    for found, middle, least, most in zip(poses.T, wanted.values(), low, high, strict=True):
+        assert found.min() >= max(middle - 0.1, least)
+        assert found.max() <= min(middle + 0.1, most)
+        assert found.min() < max(middle - 0.09, least + 1e-9)
+        assert found.max() > min(middle + 0.09, most - 1e-9)
+    assert np.corrcoef(poses[:, :2].T)[0, 1] == pytest.approx(0.0, abs=0.2)  # each by itself
+    assert 0.4 <= min(s.pitch for s in drawn) < max(s.pitch for s in drawn) <= 1.0
+
+
+def test_a_posture_leaves_the_other_draws_alone(world):
+    with_posture = draw(WAITING, world.model, "left", np.random.default_rng(3))
+    without = draw(RANGES, world.model, "left", np.random.default_rng(3))
+    assert without.pose is None
+    assert with_posture.pitch == without.pitch + 1.0
+    assert with_posture.velocity.tolist() == without.velocity.tolist()
+    assert with_posture.angular_velocity.tolist() == without.angular_velocity.tolist()
+
+
+@pytest.mark.parametrize("about", ["left", "right", "head"])
+@pytest.mark.parametrize("ground", ["flat", "decline"])
+def test_still_is_at_rest_on_the_ground_for_every_roll(about, ground):
+    made = scenario.build(
+        load(["start=still", f"behaviour.roll_about={about}", f"terrain={ground}", "seed=2"])
+    )
+    mj, data = made.model.mj, mujoco.MjData(made.model.mj)
+    place(made.model, data, made.start, made.behaviour.orientation, np.zeros(mj.nu))
+    assert not data.qvel.any()
+    assert data.qpos[7:].tolist() == made.start.pose.tolist()
+    mujoco.mj_forward(mj, data)
+    gaps = [
+        mujoco.mj_geomDistance(mj, data, mj.geom("ground").id, geom, 10.0, None)
+        for geom in np.flatnonzero((mj.geom_bodyid > 0) & (mj.geom_contype > 0))
+    ]
+    assert min(gaps) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("behaviour", ["forward_roll_1", "forward_roll_1_phase", "decline"])
+def test_a_roll_begins_from_still(behaviour):
+    made = scenario.build(load([f"behaviour={behaviour}", "start=still", "duration=3", "seed=1"]))
+    buffer, breakdown = in_memory(made)
+    assert not breakdown
+    angle = buffer.arrays()["trajectory/angular_excursion"][:, 1]
+    assert angle[-1] - angle[0] > 2 * np.pi
+
+
+def test_a_posture_that_does_not_fit(world):
+    generator = np.random.default_rng(0)
+    with pytest.raises(InputError) as error:
+        draw(WAITING, world.model, "head", generator)
+    assert str(error.value) == (
+        "start=test has no posture for behaviour.roll_about=head; it has: left"
+    )
+    tailed = replace(WAITING, postures={"left": Posture(pitch=0.0, pose={"tail": 1.0})})
+    with pytest.raises(InputError) as error:
+        draw(tailed, world.model, "left", generator)
+    assert str(error.value).startswith(
+        "start.postures.left.pose names the unknown joint 'tail'; valid: waist_y, waist_x, "
+    )

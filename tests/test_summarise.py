@@ -14,11 +14,12 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
+from rotctl.metrics.rates import wilson
+from rotctl.results.found import found
+from rotctl.results.groups import grouped, markdown
+from rotctl.results.manifest import Entry, read, write
+from rotctl.results.table import Table, table
 from rotctl.run import make, run
-from rotctl.sweep.found import found
-from rotctl.sweep.groups import grouped, markdown, wilson
-from rotctl.sweep.manifest import Entry, read, write
-from rotctl.sweep.table import Table, table
 
 ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=0.5"]
 
@@ -241,3 +242,18 @@ def test_the_summary_of_a_run_in_memory_is_the_one_in_its_log(tmp_path):
     path = tmp_path / "run.h5"
     path.write_bytes(made.log)
     assert RunLog.open(path).outcome == made.summary
+
+
+@pytest.mark.parametrize(
+    ("outcome", "reason"),
+    [
+        ({"success": "yes"}, "outcome does not say whether it is a success"),
+        ({"revolutions": [1.0]}, "outcome has no plain value for 'revolutions'"),
+        ({"revolutions": 1e400}, "outcome has no plain value for 'revolutions'"),
+        ({"revolutions": 2**70}, ""),
+    ],
+)
+def test_an_outcome_that_rotctl_does_not_write_is_damage(sweep, outcome, reason):
+    log = sorted(sweep.glob("*/run.h5"))[0]
+    change(log, outcome)
+    assert table(sweep).notes == ([f"{log.parent.name}: damaged: {reason}"] if reason else [])

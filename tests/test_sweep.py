@@ -12,12 +12,12 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
+from rotctl.results.code import code_version
+from rotctl.results.manifest import read
 from rotctl.run import make, publish
-from rotctl.sweep.code import code_version
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
-from rotctl.sweep.manifest import read
 from rotctl.sweep.plan import plan, planned
 from rotctl.sweep.points import points
 
@@ -120,7 +120,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
         (["seed=1,-2"], "seed=-2: must be greater than or equal to 0"),
         (["seed=1", "--retries", "-1"], "--retries=-1: must be at least 0"),
         (["seed=1", "--jobs", "0"], "--jobs=0: must be at least 1"),
-        (["+experiment=no"], "+experiment=no: no such experiment; valid: forward_roll_1"),
+        (["+experiment=no"], "+experiment=no: no such experiment; valid: contrasts, "),
     ]:
         code, stdout, stderr = cli("sweep", *arguments, "--out", out)
         assert (code, stdout) == (2, "")

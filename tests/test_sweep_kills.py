@@ -9,7 +9,7 @@ import pytest
 from sweep_cli import finish, kill, logs, published, start, until, workers
 
 from rotctl.log import RunLog
-from rotctl.sweep.manifest import read
+from rotctl.results.manifest import read
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 

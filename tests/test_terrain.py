@@ -13,7 +13,7 @@ from rotctl.mechanics.terrain import Flat
 from rotctl.scenario import build
 from rotctl.simulation.start import place
 
-KINDS = ["flat", "incline", "decline", "uneven", "bumps", "stairs_down", "stairs_up"]
+KINDS = ["flat", "incline", "decline", "uneven", "bumps", "stairs_down", "stairs_up", "obstacles"]
 
 
 @pytest.fixture(scope="module", params=KINDS)
@@ -45,11 +45,11 @@ def test_height_agrees_with_the_physics(scenario):
 def test_normals_are_unit_and_stand_on_the_slope(scenario):
     rng = np.random.default_rng(1)
     ground = scenario.model.ground
-    stairs = scenario.config.terrain.kind == "stairs"
+    edges = scenario.config.terrain.kind in ("stairs", "hazards")
     for x, y in rng.uniform((-3.0, -3.0), (25.0, 3.0), (20, 2)):
         normal = ground.normal(x, y)
         assert np.linalg.norm(normal) == pytest.approx(1.0, abs=1e-12)
-        if not stairs:
+        if not edges:
             rise = (ground.height(x + 0.05, y) - ground.height(x - 0.05, y)) / 0.1
             assert -normal[0] / normal[2] == pytest.approx(rise, abs=1e-6)
 
@@ -57,7 +57,13 @@ def test_normals_are_unit_and_stand_on_the_slope(scenario):
 def test_starts_touch_the_ground_and_do_not_sink_in(scenario):
     model = scenario.model
     data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, scenario.behaviour.pose(scenario.start.pitch))
+    place(
+        model,
+        data,
+        scenario.start,
+        scenario.behaviour.orientation,
+        scenario.behaviour.pose(scenario.start.pitch),
+    )
     mujoco.mj_forward(model.mj, data)
     solid = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))
     assert (data.contact.dist[solid] > -0.005).all()

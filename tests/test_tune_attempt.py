@@ -42,10 +42,10 @@ def test_the_mean_or_the_worst_run_counts():
 
 def cut_at(progress, commanded=1.3, tilt=lambda t: 0.0):
     """The time [s] at which a run of this progress(t) [rev] and tilt(t) [deg] is cut, or None."""
-    stop = hopeless(STOPPING, commanded)
+    stop = hopeless(STOPPING, commanded, lambda state: state.axis)
     for i in range(600):
         t, angle = i / 60, radians(tilt(i / 60))
-        state = SimpleNamespace(time=t, lateral_axis=(0.0, cos(angle), sin(angle)))
+        state = SimpleNamespace(time=t, axis=(0.0, cos(angle), sin(angle)))
         if stop(state, SimpleNamespace(angle=(0.0, 2 * pi * progress(t), 0.0))):
             return t
     return None

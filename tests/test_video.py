@@ -53,7 +53,7 @@ def test_it_is_an_mp4_whose_frames_move_under_a_sky(log, out):
     assert re.search(r"Video: h264 .* 640x480.* 30 fps", said)
     frames = frames_of(out)
     assert len(frames) == 15
-    assert frames[:, HEADER + 4].min() > 120  # sky, not black
+    assert np.median(frames[:, HEADER + 4]) > 120  # sky, not black; an arrow may cross it
     assert frames[:, :HEADER].min() < 90  # words
     assert np.abs(frames[0] - frames[-1]).mean() > 1.0
     assert [path.name for path in out.parent.iterdir()] == [out.name]

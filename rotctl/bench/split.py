@@ -111,7 +111,7 @@ def roll(scenario: Scenario) -> Split:
     clock = TimedSolver(controller.chain[0][1])
     controller.chain[0] = (controller.chain[0][0], clock)
     data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, behaviour.pose(scenario.start.pitch))
+    place(model, data, scenario.start, behaviour.orientation, behaviour.pose(scenario.start.pitch))
     steps = round(SECONDS * controller.settings.rate)
     buffer = TrajectoryBuffer.allocate(steps, model.mj.nq, model.mj.nv, model.mj.nu, 64)
     now = behaviour.begin(scenario.start.pitch)
@@ -132,7 +132,7 @@ def roll(scenario: Scenario) -> Split:
         blend = decision.blend
         realised = stepper.advance(data, decision.torque, state.contacts)
         t4 = time.perf_counter()
-        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        record(buffer, i, state, now, behaviour, decision, realised)
         t5 = time.perf_counter()
         solve = clock.seconds - before
         seconds["physics"] += (t1 - t0) + (t4 - t3)

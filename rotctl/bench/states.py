@@ -26,7 +26,7 @@ def record_roll(scenario: Scenario, steps: int) -> list[Recorded]:
     """Simulate `steps` control steps and keep what the controller was asked."""
     model, behaviour, controller = scenario.model, scenario.behaviour, scenario.controller
     data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, behaviour.pose(scenario.start.pitch))
+    place(model, data, scenario.start, behaviour.orientation, behaviour.pose(scenario.start.pitch))
     now, blend = behaviour.begin(scenario.start.pitch), INITIAL_BLEND
     recorded = []
     for _ in range(steps):

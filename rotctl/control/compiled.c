@@ -12,7 +12,7 @@
 
 #include <mujoco/mujoco.h>
 
-enum { CONTACTS = 64, ROWS = 3 * CONTACTS, ROOT = 6 };
+enum { CONTACTS = 64, ROWS = 3 * CONTACTS, ROOT = 6, DOFS = 256 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
 
 // MuJoCo's functions, found by Python in the library that it has loaded already.
@@ -44,7 +44,7 @@ typedef struct {
 // What `rotctl_read` finds; mirrored by `Reading` in compiled.py.
 typedef struct {
   double com[3], com_velocity[3], linear[3], angular[3], inertia[9], angular_velocity[3];
-  double rotation[9], offset[3], lateral_axis[3];
+  double rotation[9], offset[3], trunk_axes[9];
   double position[CONTACTS][3], frame[CONTACTS][9], friction[CONTACTS][2];
   double gap[CONTACTS];
   int body[CONTACTS];
@@ -81,6 +81,9 @@ typedef struct {
   double *H, *f, *Hs, *fs, *x, *lower, *upper, *work;  // one quadratic program
   double *t1, *t2;
 } Self;
+
+// Whether a body is the character's: it is the first tree, loose things on the ground follow.
+static int own(const mjModel* m, int body) { return m->body_rootid[body] == 1; }
 
 static double dot(const double* a, const double* b, int n) {
   double sum = 0;
@@ -125,7 +128,7 @@ int rotctl_mujoco_version(void) { return mjVERSION_HEADER; }
 
 // Sizes that the Python side must share, so that a library built from other source is refused.
 int rotctl_layout(void) {
-  return sizeof(Constants) + 7 * sizeof(Reading) + 49 * sizeof(Wishes) + 343 * sizeof(Answer);
+  return 2 * sizeof(Constants) + 7 * sizeof(Reading) + 49 * sizeof(Wishes) + 343 * sizeof(Answer);
 }
 
 void rotctl_free(Self* s) {
@@ -139,7 +142,7 @@ void rotctl_free(Self* s) {
 Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const Constants* c) {
   Self* s = calloc(1, sizeof(Self));
   if (!s) return 0;
-  int nv = m->nv, nu = nv - ROOT, n = nu + 4 * CONTACTS + 1;
+  int nv = m->nv, nu = m->nu, n = nu + 4 * CONTACTS + 1;
   s->m = m, s->scratch = scratch, s->mj = *mj, s->c = *c, s->nv = nv, s->nu = nu;
   struct {
     double** p;
@@ -159,12 +162,12 @@ Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const C
   return s;
 }
 
-// mechanics/state.py: momentum, contacts, bias, lateral axis. FAILED on too many contacts.
+// mechanics/state.py: momentum, contacts, bias, the trunk's axes. FAILED on too many contacts.
 int rotctl_read(Self* s, mjData* d, Reading* r) {
   const mjModel* m = s->m;
   int nv = s->nv;
-  double p[128], about[3];
-  if (nv > 128) return FAILED;
+  double p[DOFS], about[3];
+  if (nv > DOFS) return FAILED;
   s->mj.mulM(m, d, p, d->qvel);
   memcpy(r->rotation, d->xmat + 9, sizeof r->rotation);
   memcpy(r->com, d->subtree_com + 3, sizeof r->com);
@@ -188,12 +191,14 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     for (int k = i + 1; k < 3; k++) w[i] -= L[3 * k + i] * w[k];
     w[i] /= L[4 * i];
   }
-  double axis[3] = {0, 0, 0}, length = 0;
+  double* axes = r->trunk_axes;
+  memset(axes, 0, sizeof r->trunk_axes);
   for (int t = 0; t < s->c.trunk_count; t++)
-    for (int i = 0; i < 3; i++)
-      axis[i] += d->xmat[9 * s->c.trunk[t] + 3 * i + 1] * s->c.trunk_weight[t];
-  length = sqrt(dot(axis, axis, 3));
-  for (int i = 0; i < 3; i++) r->lateral_axis[i] = axis[i] / length;
+    for (int i = 0; i < 9; i++) axes[i] += d->xmat[9 * s->c.trunk[t] + i] * s->c.trunk_weight[t];
+  for (int k = 0; k < 3; k++) {
+    double length = sqrt(axes[k] * axes[k] + axes[3 + k] * axes[3 + k] + axes[6 + k] * axes[6 + k]);
+    for (int i = 0; i < 3; i++) axes[3 * i + k] /= length;
+  }
   for (int i = 0; i < nv; i++) {
     s->bias[i] = d->qfrc_bias[i] - d->qfrc_passive[i];
     s->diagonal[i] = d->M[m->M_rowadr[i] + m->M_rownnz[i] - 1];
@@ -202,14 +207,14 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
   for (int i = 0; i < d->ncon; i++) {
     const mjContact* k = d->contact + i;
     int first = m->geom_bodyid[k->geom[0]], second = m->geom_bodyid[k->geom[1]];
-    if ((first && second) || k->efc_address < 0) continue;
+    if (own(m, first) == own(m, second) || k->efc_address < 0) continue;
     if (k->dist > s->c.touch &&
         !(s->c.look_ahead && k->dist + s->c.look_ahead * d->efc_vel[k->efc_address] < 0))
       continue;
     if (r->count == CONTACTS) return FAILED;
     int j = r->count++;
-    double sign = first ? -1 : 1;
-    r->body[j] = first > second ? first : second;
+    double sign = own(m, first) ? -1 : 1;
+    r->body[j] = own(m, first) ? first : second;
     r->row[j] = k->efc_address;
     memcpy(r->position[j], k->pos, sizeof r->position[j]);
     for (int a = 0; a < 9; a++) r->frame[j][a] = sign * k->frame[a];
@@ -224,7 +229,7 @@ static void pose_torques(Self* s, mjData* d, const Wishes* w) {
   const mjModel* m = s->m;
   const Constants* c = &s->c;
   int nu = s->nu, nv = s->nv;
-  double h = c->period, force[2 * 128], acceleration[2 * 128];
+  double h = c->period, force[2 * DOFS] = {0}, acceleration[2 * DOFS];
   memcpy(s->scratch->M, d->M, sizeof(mjtNum) * m->nC);
   for (int i = 0; i < nu; i++) {
     int v = i + ROOT;
@@ -437,6 +442,8 @@ static void collect(Self* s, mjData* d, const Reading* r, const int* contact, in
   int nv = s->nv, n = 3 * k;
   for (int i = 0; i < k; i++)
     memcpy(s->jacobian + 3 * i * nv, d->efc_J + r->row[contact[i]] * nv, sizeof(double) * 3 * nv);
+  for (int v = ROOT + s->nu; v < nv; v++)  // of loose things
+    for (int i = 0; i < n; i++) s->jacobian[i * nv + v] = 0;
   memcpy(s->jacobian + n * nv, s->bias, sizeof(double) * nv);
   s->mj.solveM(s->m, d, s->solved, s->jacobian, n + 1);
   const double* fall = s->solved + n * nv;

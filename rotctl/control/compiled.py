@@ -79,7 +79,7 @@ class _Reading(ctypes.Structure):
         ("angular_velocity", _double * 3),
         ("rotation", _double * 9),
         ("offset", _double * 3),
-        ("lateral_axis", _double * 3),
+        ("trunk_axes", _double * 9),
         ("position", _double * (3 * CAPACITY)),
         ("frame", _double * (9 * CAPACITY)),
         ("friction", _double * (2 * CAPACITY)),
@@ -122,7 +122,7 @@ def library() -> ctypes.CDLL | None:
         layout = found.rotctl_layout()
     except (OSError, AttributeError):
         return None
-    ours = (_Constants, 1), (_Reading, 7), (_Wishes, 49), (_Answer, 343)
+    ours = (_Constants, 2), (_Reading, 7), (_Wishes, 49), (_Answer, 343)
     if layout != sum(factor * ctypes.sizeof(structure) for structure, factor in ours):
         return None
     found.rotctl_new.restype = _pointer
@@ -215,7 +215,7 @@ class CompiledStep:
                 friction=self._read["friction"][: 2 * m].reshape(m, 2).copy(),
                 gap=self._read["gap"][:m].copy(),
             ),
-            lateral_axis=found["lateral_axis"],
+            trunk_axes=found["trunk_axes"].reshape(3, 3),
             data=data,
         )
         return self._last

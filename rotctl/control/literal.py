@@ -52,7 +52,7 @@ def assemble(terms: Terms, model: Model, state: State) -> Problem:
     normal[::3] = 0.0
     free = np.full(nv, np.inf)
     dynamics = np.concatenate(  # S' tau + J' lambda - M qddot = C
-        (-M, np.eye(nv)[:, ROOT_DOFS:], terms.jacobian.T, np.zeros((nv, 1))), axis=1
+        (-M, np.eye(nv)[:, model.joints], terms.jacobian.T, np.zeros((nv, 1))), axis=1
     )
     return Problem(
         H=H,

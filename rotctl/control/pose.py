@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 from rotctl.control.settings import Gains
-from rotctl.mechanics.model import ROOT_DOFS, Model
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
 
@@ -33,19 +33,20 @@ class PoseTracker:
     def torques(self, state: State, poses: Array) -> Array:
         """Torques (k, nu) [N m] towards poses (k, nu) [rad]."""
         h, mj, scratch = self._period, self._model.mj, self._scratch
-        diagonal = self._model.diagonal[ROOT_DOFS:]
+        joints = self._model.joints
+        diagonal = self._model.diagonal[joints]
         inertia = state.data.M[diagonal] - self._model.armature
         stiffness = self._gains.pose_stiffness * inertia
         damping = self._gains.pose_damping * inertia
-        velocity = state.velocity[ROOT_DOFS:]
-        predicted = state.position[ROOT_DOFS + 1 :] + h * velocity
+        velocity = state.velocity[joints]
+        predicted = state.position[self._model.angles] + h * velocity
         explicit = stiffness * (poses - predicted) - damping * velocity
         # (M + h Kd) qddot = explicit - C: same sparsity as M, so MuJoCo's factor serves.
         scratch.M[:] = state.data.M
         scratch.M[diagonal] += h * damping
         mujoco.mj_factorM(mj, scratch)
         force = np.repeat(-state.bias[None], len(poses), axis=0)
-        force[:, ROOT_DOFS:] += explicit
+        force[:, joints] += explicit
         acceleration = np.empty_like(force)
         mujoco.mj_solveM(mj, scratch, acceleration, force)
-        return np.asarray(explicit - h * damping * acceleration[:, ROOT_DOFS:])
+        return np.asarray(explicit - h * damping * acceleration[:, joints])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from rotctl.control.settings import ControllerSettings, Weights
 from rotctl.mechanics.contacts import contact_jacobian
-from rotctl.mechanics.model import ROOT_DOFS, Model
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import contact_momentum_maps
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
@@ -24,6 +24,7 @@ class Terms:
         torque_limit: (nu,) [N m].
         rates: (6,) wanted Ldot and Hdot [N, N m].
         momentum_weights: (6,) weights of their errors.
+        joints: degrees of freedom that have motors.
         pose_a, pose_b: (nu,) torques tau_a, tau_b of eq. 7 [N m].
         blend: gamma of the previous step [-].
         jacobian: (3m, nv) contact rows N, T1, T2.
@@ -42,6 +43,7 @@ class Terms:
     torque_limit: Array
     rates: Array
     momentum_weights: Array
+    joints: slice
     pose_a: Array
     pose_b: Array
     blend: float
@@ -65,7 +67,7 @@ class Terms:
     @cached_property
     def actuation(self) -> Array:
         """B = J M^-1 S' (3m, nu)."""
-        return self.solved[:, ROOT_DOFS:]
+        return self.solved[:, self.joints]
 
     @cached_property
     def actuation_square(self) -> Array:
@@ -141,6 +143,7 @@ def collect(
         momentum_weights=np.array(
             [weights.linear_momentum] * 3 + [across, weights.angular_momentum, across]
         ),
+        joints=model.joints,
         pose_a=torques[0],
         pose_b=torques[1],
         blend=blend,

@@ -7,10 +7,11 @@
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.provenance import collect
 from rotctl.log.reader import RunLog, read_attributes
-from rotctl.log.schema import SCHEMA, SCHEMA_VERSION, DatasetSpec
+from rotctl.log.schema import LOG_NAME, SCHEMA, SCHEMA_VERSION, DatasetSpec
 from rotctl.log.writer import encode_run, write_log, write_run
 
 __all__ = [
+    "LOG_NAME",
     "SCHEMA",
     "SCHEMA_VERSION",
     "DatasetSpec",

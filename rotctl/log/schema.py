@@ -13,12 +13,13 @@ import numpy as np
 
 from rotctl.errors import LogError
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
 MAX_MODEL_BYTES = 16 * 2**20
 MAX_TOTAL_BYTES = 2 * 2**30
+LOG_NAME = "run.h5"  # in a folder that the run id names
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ SCHEMA: dict[str, DatasetSpec] = {
     ),
     "trajectory/blend": _per_step("1", "weight between the torques of the two pose objectives"),
     "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
-    "trajectory/lateral_axis": _per_step("1", "mean lateral axis of the trunk, unit vector", 3),
+    "trajectory/trunk_axis": _per_step("1", "the trunk's mean axis that it rolls about, unit", 3),
     "contacts/count": DatasetSpec(
         "<i4", ("steps",), "1", "all contacts with the ground; may exceed the recorded capacity"
     ),

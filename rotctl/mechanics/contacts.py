@@ -1,4 +1,8 @@
-"""Ground contacts: frames, points and Jacobian rows, straight from MuJoCo's constraint rows."""
+"""Ground contacts: frames, points and Jacobian rows, straight from MuJoCo's constraint rows.
+
+Whatever is not the character is ground, loose things included: control plans with their
+contacts as if they stood still.
+"""
 
 from dataclasses import dataclass
 
@@ -6,6 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.mechanics.model import is_character
 from rotctl.rotations import Array
 
 
@@ -46,17 +51,19 @@ def read_contacts(
     """
     contact = data.contact
     bodies = mj.geom_bodyid[contact.geom]  # (ncon, 2)
-    chosen = np.flatnonzero((bodies == 0).any(axis=1) & (contact.efc_address >= 0))
+    own = is_character(mj)[bodies]
+    chosen = np.flatnonzero((own.sum(axis=1) == 1) & (contact.efc_address >= 0))
     gap, row = contact.dist[chosen], contact.efc_address[chosen]
     there = gap <= touch
     if look_ahead and not there.all():
         there |= gap + look_ahead * data.efc_vel[row] < 0.0
     chosen = chosen[there]
+    own, bodies = own[chosen], bodies[chosen]
     # Where the character is the contact's first geom, MuJoCo's frame points into the
     # ground while its rows still measure separation: only the frame needs turning.
-    sign = np.where(bodies[chosen, 0] > 0, -1.0, 1.0)
+    sign = np.where(own[:, 0], -1.0, 1.0)
     return Contacts(
-        body=bodies[chosen].max(axis=1),
+        body=np.where(own[:, 0], bodies[:, 0], bodies[:, 1]),
         position=contact.pos[chosen],
         frame=contact.frame[chosen].reshape(-1, 3, 3) * sign[:, None, None],
         row=row[there].astype(np.int64),
@@ -66,15 +73,18 @@ def read_contacts(
 
 
 def contact_jacobian(mj: mujoco.MjModel, data: mujoco.MjData, contacts: Contacts) -> Array:
-    """Rows N, T1, T2 of each contact (3m, nv): its point's velocity along the frame's rows.
+    """Rows N, T1, T2 of each contact (3m, nv): the character's velocity along the frame's rows.
 
     With an elliptic cone they are rows of `efc_J`; with a pyramidal cone each pair of
     opposite edges is N +- mu T, from which N and T follow exactly.
     """
     rows = data.efc_J.reshape(-1, mj.nv)
     if mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC:
-        return np.asarray(rows[(contacts.row[:, None] + _THREE).ravel()])
-    return _from_pyramid(rows, contacts.row, contacts.friction)
+        jacobian = rows[(contacts.row[:, None] + _THREE).ravel()]
+    else:
+        jacobian = _from_pyramid(rows, contacts.row, contacts.friction)
+    jacobian[:, ~is_character(mj)[mj.dof_bodyid]] = 0.0
+    return np.asarray(jacobian)
 
 
 def realised_forces(mj: mujoco.MjModel, data: mujoco.MjData, contacts: Contacts) -> Array:

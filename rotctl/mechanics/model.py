@@ -1,4 +1,9 @@
-"""Character, ground and physics options compiled into one model, with the indices control needs."""
+"""Character, ground and physics options compiled into one model, with the indices control needs.
+
+The character's bodies and degrees of freedom come first. After them come those of loose
+things on the ground, if there are any. MuJoCo's arrays are of the whole world; its mass matrix
+is block diagonal in the two, so that control can work on full vectors and leave the rest at 0.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -23,14 +28,16 @@ class Model:
     Attributes:
         mj: the MuJoCo model.
         mjcf: the same model as self-contained text.
-        joint_names: actuated joints in motor order; motor i drives dof 6 + i.
+        joint_names: actuated joints in motor order.
+        joints: the actuated joints' degrees of freedom, in motor order.
+        angles: their entries in `qpos`.
         joint_range: (nu, 2) [rad].
         torque_limit: (nu,) [N m].
         armature: (nu,) of the motors, and what the physics adds for damping [kg m2].
         diagonal: (nv,) addresses of the mass matrix's diagonal in `data.M`.
         mass: of the character [kg].
         gravity: (3,) [m/s2].
-        trunk: body ids whose lateral axes define the rolling axis.
+        trunk: body ids whose axes, averaged, are compared with the rolling axis.
         trunk_weights: (len(trunk), 1) their shares of the trunk's mass.
         excluded: (nbody,) True where a body's contacts are held out of control.
         touch: control sees the contacts whose gap is below this [m],
@@ -41,6 +48,8 @@ class Model:
     mj: mujoco.MjModel
     mjcf: str
     joint_names: tuple[str, ...]
+    joints: slice
+    angles: slice
     joint_range: Array
     torque_limit: Array
     armature: Array
@@ -79,10 +88,10 @@ def build(
     spec.visual.global_.offheight = 1080
     ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]))
     add_tiles(spec)
-    ground.add(spec)
     try:
         added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
         add_character(spec, replace(character, joint_armature=character.joint_armature + added))
+        ground.add(spec)
         mj = spec.compile()
     except ValueError as error:
         reason = str(error).strip().splitlines()[0]
@@ -95,13 +104,16 @@ def build(
     for name in character.exclude_from_control:
         excluded[_body_id(mj, name, "character.exclude_from_control")] = True
     hinges = mj.actuator_trnid[:, 0]
+    joints = slice(ROOT_DOFS, ROOT_DOFS + mj.nu)
     return Model(
         mj=mj,
         mjcf=spec.to_xml(),
         joint_names=tuple(mj.joint(int(j)).name for j in hinges),
+        joints=joints,
+        angles=slice(joints.start + 1, joints.stop + 1),  # the root's quaternion has one more
         joint_range=mj.jnt_range[hinges].copy(),
         torque_limit=mj.actuator_ctrlrange[:, 1].copy(),
-        armature=mj.dof_armature[ROOT_DOFS:].copy(),
+        armature=mj.dof_armature[joints].copy(),
         diagonal=(mj.M_rowadr + mj.M_rownnz - 1).astype(np.int64),
         mass=float(mj.body_subtreemass[1]),
         gravity=mj.opt.gravity.copy(),
@@ -115,20 +127,26 @@ def build(
 
 
 def _check(mj: mujoco.MjModel, character: Character) -> None:
-    if mj.nu != mj.nv - ROOT_DOFS:
+    hinges = int(is_character(mj)[mj.dof_bodyid].sum()) - ROOT_DOFS
+    if mj.nu != hinges:
         raise InputError(
-            f"character {character.name!r} has {mj.nu} motors for {mj.nv - ROOT_DOFS} hinges; "
+            f"character {character.name!r} has {mj.nu} motors for {hinges} hinges; "
             "every joint but the root needs one"
         )
     data = mujoco.MjData(mj)
     mujoco.mj_forward(mj, data)
-    bodies = mj.geom_bodyid > 0
+    bodies = is_character(mj)[mj.geom_bodyid]
     height = lowest_and_highest(mj, data, bodies)
     if abs(height[1] - height[0] - character.height) > 0.02:
         raise InputError(
             f"character.height is {character.height:g} m, but the bodies stand "
             f"{height[1] - height[0]:.3f} m tall"
         )
+
+
+def is_character(mj: mujoco.MjModel) -> NDArray[np.bool_]:
+    """(nbody,) which bodies are the character's: those of the first tree."""
+    return np.asarray(mj.body_rootid == 1)
 
 
 def lowest_and_highest(
@@ -148,6 +166,6 @@ def lowest_and_highest(
 def _body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
     if number < 1:  # 0 is the world
-        names = ", ".join(mj.body(i).name for i in range(1, mj.nbody))
+        names = ", ".join(mj.body(int(i)).name for i in np.flatnonzero(is_character(mj)))
         raise InputError(f"{key} names the unknown body {name!r}; bodies: {names}")
     return int(number)

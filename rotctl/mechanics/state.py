@@ -21,7 +21,7 @@ class State:
         velocity: (nv,) generalised velocity [m/s, rad/s].
         momentum: rotation indices and centre of mass.
         contacts: contacts with the ground.
-        lateral_axis: (3,) mean lateral axis of the trunk, unit, world.
+        trunk_axes: (3, 3) columns are the trunk's mean front, left and up, each unit, world.
         data: the MuJoCo data behind all this. What is read from it, and the properties
             below, hold until the physics steps.
     """
@@ -31,7 +31,7 @@ class State:
     velocity: Array
     momentum: Momentum
     contacts: Contacts
-    lateral_axis: Array
+    trunk_axes: Array
     data: mujoco.MjData
 
     @property
@@ -42,6 +42,11 @@ class State:
         """
         return np.asarray(self.data.qfrc_bias - self.data.qfrc_passive)
 
+    @property
+    def root_angular_velocity(self) -> Array:
+        """Of the root body (3,) [rad/s], world axes."""
+        return np.asarray(self.momentum.root_rotation @ self.velocity[3:6])
+
     def solve_mass(self, mj: mujoco.MjModel, rows: Array) -> Array:
         """Rows of right-hand sides (k, nv) to rows of M^-1 rhs (k, nv)."""
         solved = np.empty_like(rows)
@@ -51,13 +56,13 @@ class State:
 
 def read(model: Model, data: mujoco.MjData) -> State:
     """Read the state; positions and velocities must have been evaluated (`mj_step1`)."""
-    axis = (data.xmat[model.trunk, 1::3] * model.trunk_weights).sum(axis=0)
+    axes = (data.xmat[model.trunk] * model.trunk_weights).sum(axis=0).reshape(3, 3)
     return State(
         time=data.time,
         position=data.qpos.copy(),
         velocity=data.qvel.copy(),
         momentum=read_momentum(model.mj, data),
         contacts=read_contacts(model.mj, data, model.touch, model.look_ahead),
-        lateral_axis=axis / np.sqrt(axis @ axis),
+        trunk_axes=axes / np.sqrt((axes**2).sum(axis=0)),
         data=data,
     )

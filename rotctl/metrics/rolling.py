@@ -41,11 +41,12 @@ class RollingMetrics:
         revolutions: in-plane excursion in the direction commanded [rev].
         angular_velocity_mean: in-plane, after settling, with its sign [rev/s].
         speed_mean: of the centre of mass along x, after settling [m/s].
-        heading_error_end: median heading of the trunk's lateral axis over the last
-            second, against the rolling axis [deg]; positive turns left.
+        heading_error_end: median heading of the trunk's axis that it rolls about, over
+            the last second, against the rolling axis [deg]; positive turns left.
         lateral_drift: largest |y| of the centre of mass from where it started [m].
         longest_stall: longest time without the criterion's progress [s].
         stalled_at: when that began [s].
+        airborne: share of the time without a contact with the ground.
         torque_p99_fraction: 99th percentile of |torque| / limit over joints and time.
         solver_failures: control steps on which every solver failed.
     """
@@ -58,6 +59,7 @@ class RollingMetrics:
     lateral_drift: float
     longest_stall: float
     stalled_at: float
+    airborne: float
     torque_p99_fraction: float
     solver_failures: int
 
@@ -76,13 +78,13 @@ def measure(
     steps = len(com)
     if steps == 0:
         nan = math.nan
-        return RollingMetrics(0.0, 0.0, nan, nan, nan, 0.0, 0.0, 0.0, nan, 0)
+        return RollingMetrics(0.0, 0.0, nan, nan, nan, 0.0, 0.0, 0.0, nan, nan, 0)
     angle = np.asarray(log["trajectory/angular_excursion"], dtype=float)[:, 1] / (2 * math.pi)
     direction = -1.0 if commanded < 0 else 1.0
     first = min(round(criteria.settle / period), steps - 1)
     # A run that ends before it settled has no mean speeds.
     elapsed = (steps - 1 - first) * period or math.nan
-    axis = np.asarray(log["trajectory/lateral_axis"], dtype=float)[-round(1.0 / period) :]
+    axis = np.asarray(log["trajectory/trunk_axis"], dtype=float)[-round(1.0 / period) :]
     heading = np.degrees(np.arctan2(-axis[:, 0], axis[:, 1]))
     stall, stalled_at = longest_stall(direction * angle, criteria.stall_progress, period)
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
@@ -95,6 +97,7 @@ def measure(
         lateral_drift=float(np.abs(com[:, 1] - com[0, 1]).max()),
         longest_stall=stall,
         stalled_at=stalled_at,
+        airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=int(np.count_nonzero(np.asarray(log["solver/status"]) == 2)),
     )

@@ -33,6 +33,10 @@ class PosePair:
     low: Array
     high: Array
 
+    def start(self, phase: float) -> Array:
+        """The pose (nu,) [rad] to begin in at a phase [rad]: r_a, the tighter one."""
+        return np.asarray(self.at(phase)[0])
+
     def at(self, phase: float) -> Array:
         """Both poses (2, nu) [rad] at a phase [rad]."""
         poses = np.array([1.0, cos(phase), sin(phase)]) @ self.coefficients

@@ -32,11 +32,12 @@ from rotctl.rotations import Array
 MAX_FRAMES = 200
 FRAME = (320, 250)  # pixels
 OVERSAMPLING = 2  # frames are drawn this much larger: smooth edges without multisampling
-DEFAULT_COLUMNS = 6
+MAX_COLUMNS = 6
 SETTLED = 2.0  # [s] by default the strip starts here
 DEFAULT_TURNS = 2.0  # [rev] and lasts so long
 SMALL = 1_500_000  # [bytes] a larger picture is reduced to 256 colours
 
+_THIN = 4  # pixels between the frames of a strip
 _MARGIN, _GAP, _CAPTION, _HEADER, _FOOTER = 22, 10, 30, 84, 40  # pixels
 
 
@@ -65,36 +66,55 @@ def filmstrip(
     """
     if not 1 <= frames <= MAX_FRAMES:
         raise InputError(f"frames is {frames}, valid: 1 to {MAX_FRAMES}")
-    columns = min(DEFAULT_COLUMNS, frames) if columns is None else columns
+    columns = min(MAX_COLUMNS, frames) if columns is None else columns
     if not 1 <= columns <= frames:
         raise InputError(f"columns is {columns}, valid: 1 to {frames}, the number of frames")
-    states = log["trajectory/qpos"]
-    rows = _rows(log, states, frames, start, end)
+    rows = _rows(log, frames, start, end)
+    pictures, shown = _drawn(log, rows, FRAME)
+    sheet = _sheet(log, pictures, shown, columns)
+    write(out, sheet)
+
+
+def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
+    """The same moments as a PNG without words: one row of frames of that many pixels each.
+
+    Raises:
+        InputError: nothing can be drawn on this machine.
+        LogError: the log is damaged or its model is not safe to draw.
+    """
+    pictures, _ = _drawn(log, _rows(log, frames, None, None), size)
+    row = Image.new("RGB", (frames * (size[0] + _THIN) - _THIN, size[1]), PAPER)
+    for i, picture in enumerate(pictures):
+        row.paste(picture, (i * (size[0] + _THIN), 0))
+    return _png(row.quantize(160, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE))
+
+
+def _drawn(
+    log: RunLog, rows: list[int], size: tuple[int, int]
+) -> tuple[list[Image.Image], list[Moment]]:
+    """Frames of these rows of the log, and what they show."""
     backend = gl.backend()
     # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
     from rotctl.report import scene
 
     model = stored_model.load(log)
-    width, height = (OVERSAMPLING * side for side in FRAME)
-    shown = moments(log, rows)
+    width, height = (OVERSAMPLING * side for side in size)
+    states, shown = log["trajectory/qpos"], moments(log, rows)
     with scene.opened(model, backend, width, height) as stage:
         stage.fit(states[rows])
         pictures = [
-            draw(stage, state, moment, FRAME)
+            draw(stage, state, moment, size)
             for state, moment in zip(states[rows], shown, strict=True)
         ]
-    sheet = _sheet(log, pictures, shown, columns)
-    _write(out, sheet)
+    return pictures, shown
 
 
 # ---------------------------------------------------------------- which moments
 
 
-def _rows(
-    log: RunLog, states: Array, frames: int, start: float | None, end: float | None
-) -> list[int]:
+def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> list[int]:
     """Rows of the log to show."""
-    time = drawable(log, states)
+    time = drawable(log, log["trajectory/qpos"])
     if start is None and end is None:
         first, final = _two_turns(time, turns_done(log)[: len(time)])
     else:
@@ -156,7 +176,7 @@ def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float) -> None:
     pen.text((right, y), "left limbs are darker", SOFT, font, anchor="ra")
 
 
-def _write(out: Path, sheet: Image.Image) -> None:
+def write(out: Path, sheet: Image.Image) -> None:
     """Replace `out` by a PNG in one step."""
     packed = _png(sheet)
     if len(packed) > SMALL:

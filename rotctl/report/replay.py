@@ -5,8 +5,7 @@ bundled from `static/source/` (see `static/BUILD.md`). Its Content-Security-Poli
 script and that style by their hashes and nothing else, whatever a log may say.
 """
 
-from base64 import b64encode
-from hashlib import sha256
+from dataclasses import dataclass
 from html import escape
 from importlib.resources import files as resources
 from pathlib import Path
@@ -16,6 +15,7 @@ from rotctl import __version__
 from rotctl.log import RunLog
 from rotctl.report import files, gl
 from rotctl.report.pack import pack
+from rotctl.report.policy import BESIDE, policy, this
 from rotctl.report.title import Title, title
 
 _LAYERS = (
@@ -42,17 +42,35 @@ def replay(log: RunLog, out: Path, compare: RunLog | None = None) -> None:
     files.replace(out, page(log, compare).encode())
 
 
-def page(log: RunLog, compare: RunLog | None = None) -> str:
-    """The HTML of a replay; arguments and errors are those of `replay`."""
+@dataclass(frozen=True)
+class Site:
+    """The site that a replay is one page of.
+
+    Attributes:
+        script: address of the script that all its replays share, seen from the page.
+        index: address of the page to go back to.
+    """
+
+    script: str
+    index: str
+
+
+def page(log: RunLog, compare: RunLog | None = None, site: Site | None = None) -> str:
+    """The HTML of a replay; arguments and errors are those of `replay`.
+
+    Args:
+        site: None: the page stands alone.
+    """
     gl.not_needed()
     # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
     from rotctl.report.replay_data import data
 
-    style, script = _static("replay.css"), _static("replay.js")
+    style, script = _static("replay.css"), code()
     tree, block = pack(data(log, compare))
     top = title(log)
     return Template(_static("replay.html")).substitute(
-        policy=_policy(style, script),
+        policy=policy(script=BESIDE if site else this(script), style=this(style)),
+        back=f'<a class="back" href="{escape(site.index)}">&larr; report</a>' if site else "",
         version=escape(__version__),
         name=escape(top.name),
         about=escape(top.about),
@@ -61,27 +79,17 @@ def page(log: RunLog, compare: RunLog | None = None) -> str:
         other=_other(title(compare)) if compare else "",
         layers=_layers(compare is not None),
         style=style,
-        script=script,
+        script=f'<script src="{escape(site.script)}"></script>'
+        if site
+        else f"<script>{script}</script>",
         tree=tree,
         bytes=block,
     )
 
 
-def _policy(style: str, script: str) -> str:
-    """Nothing but this very style and this very script; nothing is loaded or sent."""
-    return "; ".join(
-        [
-            "default-src 'none'",
-            f"script-src {_hash(script)}",
-            f"style-src {_hash(style)}",
-            "base-uri 'none'",
-            "form-action 'none'",
-        ]
-    )
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode('ascii')}'"
+def code() -> str:
+    """The script of every replay."""
+    return _static("replay.js")
 
 
 def _other(compared: Title) -> str:

@@ -26,7 +26,7 @@ DISC = 0.17  # [m] radius of the disc that stands for a shadow, at the ground
 DISC_GROWTH = 0.12  # [m] for each metre above
 SUN = (0.25, 0.45, -1.0)  # direction of its light
 _FAR = 60.0  # [m] where the ground has faded into the sky
-_FOREGROUND = (0, 1)  # geom groups: character, world
+_CHARACTER, _WORLD, _LOOSE = 0, 1, 2  # geom groups, all drawn
 
 
 @dataclass(frozen=True)
@@ -67,12 +67,13 @@ class Scene:
         self.shadows = shadows
         self.width, self.height = width, height
         self._data = mujoco.MjData(model)
-        self._limbs = model.geom_bodyid > 0
+        self._limbs = model.body_rootid[model.geom_bodyid] == 1
         self._distance = 0.0
         self._centre = 0.0  # [m] height of the camera's target above the ground
         _light(model, width, height, shadows)
         _shade_left(model)
-        model.geom_group[:] = np.where(self._limbs, *_FOREGROUND)
+        model.geom_group[:] = np.where(self._limbs, _CHARACTER, _LOOSE)
+        model.geom_group[model.geom_bodyid == 0] = _WORLD
         self._view = mujoco.MjvScene(model, maxgeom=model.ngeom + model.nbody + 16)
         self._view.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = False
         self._view.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = shadows

@@ -22,6 +22,15 @@ INITIAL_BLEND = 0.5  # gamma before the first decision: no preference
 class Behaviour(Protocol):
     """What the loop asks of a behaviour; see `rotctl.behaviours.rolling` for one."""
 
+    @property
+    def orientation(self) -> Array:
+        """Of the trunk at phase 0 on level ground (4,), unit quaternion."""
+        ...
+
+    def trunk_axis(self, state: State) -> Array:
+        """The trunk's axis (3,) that should stay on the axis of rotation, unit, world."""
+        ...
+
     def pose(self, phase: float) -> Array:
         """Pose (nu,) [rad] to start in."""
         ...
@@ -88,7 +97,7 @@ def simulate(
             f"nearest: {max(1, steps) / rate:.10g}"
         )
     data = mujoco.MjData(mj)
-    place(model, data, start, behaviour.pose(start.pitch))
+    place(model, data, start, behaviour.orientation, behaviour.pose(start.pitch))
     buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity)
     buffer.model.joint[:] = model.joint_names
     buffer.model.torque_limit[:] = model.torque_limit
@@ -108,7 +117,7 @@ def simulate(
             last_fallback = decision.reasons[-1]
             buffer.add_event(state.time, last_fallback)
         realised = stepper.advance(data, decision.torque, state.contacts)
-        record(buffer, i, state, now, behaviour.phase(now), decision, realised)
+        record(buffer, i, state, now, behaviour, decision, realised)
         progress()
         remark = stepper.remark()
         if remark:
@@ -124,7 +133,7 @@ def record(
     i: int,
     state: State,
     now: Excursion,
-    phase: float,
+    behaviour: Behaviour,
     decision: Decision,
     realised: Array,
 ) -> None:
@@ -145,8 +154,8 @@ def record(
     trajectory.linear_momentum_rate_predicted[i] = decision.rates_predicted[:3]
     trajectory.angular_momentum_rate_predicted[i] = decision.rates_predicted[3:]
     trajectory.blend[i] = decision.blend
-    trajectory.phase[i] = phase
-    trajectory.lateral_axis[i] = state.lateral_axis
+    trajectory.phase[i] = behaviour.phase(now)
+    trajectory.trunk_axis[i] = behaviour.trunk_axis(state)
     found = state.contacts
     m = min(found.count, buffer.contacts.body.shape[1])
     contacts = buffer.contacts

@@ -1,14 +1,28 @@
 """Start states, drawn from the seed."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, cross
-from rotctl.settings import STRICT, Range
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model, is_character
+from rotctl.rotations import Array, advance, cross
+from rotctl.settings import STRICT, Finite, NonNegative, Range
+
+
+@validated(frozen=True, config=STRICT)
+class Posture:
+    """How a character waits for its roll: pitch of the pelvis [rad] and joint angles [rad].
+
+    A joint name without a side stands for both sides; joints not named are at 0.
+    """
+
+    pitch: Finite
+    pose: dict[str, Finite]
+    description: str = ""
 
 
 @validated(frozen=True, config=STRICT)
@@ -20,6 +34,9 @@ class StartSettings:
         speed_x, speed_y: velocity of the centre of mass [m/s].
         angular_velocity_x, angular_velocity_y, angular_velocity_z: of the whole body,
             moving as one rigid piece [rad/s].
+        postures: to start in, by the axis that is rolled about; `pitch` is then added to
+            theirs. Without any a run starts in its behaviour's own pose.
+        scatter: how far each joint may be from its posture, either way [rad].
     """
 
     name: str
@@ -29,20 +46,36 @@ class StartSettings:
     angular_velocity_x: Range
     angular_velocity_y: Range
     angular_velocity_z: Range
+    postures: dict[str, Posture] = field(default_factory=dict)
+    scatter: NonNegative = 0.0
     description: str = ""
 
 
 @dataclass(frozen=True)
 class Start:
-    """A drawn start: pitch [rad], velocity (3,) [m/s], angular velocity (3,) [rad/s]."""
+    """A drawn start.
+
+    Attributes:
+        pitch: of the pelvis [rad].
+        velocity: (3,) of the centre of mass [m/s].
+        angular_velocity: (3,) of the whole body [rad/s].
+        pose: (nu,) [rad]; None leaves it to the behaviour.
+    """
 
     pitch: float
     velocity: Array
     angular_velocity: Array
+    pose: Array | None = None
 
 
-def draw(settings: StartSettings, generator: np.random.Generator) -> Start:
-    """Draw pitch, speeds and angular velocities, in the order the settings list them."""
+def draw(
+    settings: StartSettings, model: Model, roll_about: str, generator: np.random.Generator
+) -> Start:
+    """Draw pitch, speeds and angular velocities, in the order the settings list them, then a pose.
+
+    Raises:
+        InputError: there is no posture for a roll about that axis, or it does not fit the model.
+    """
     pitch, vx, vy, wx, wy, wz = (
         generator.uniform(*bounds)
         for bounds in (
@@ -54,20 +87,49 @@ def draw(settings: StartSettings, generator: np.random.Generator) -> Start:
             settings.angular_velocity_z,
         )
     )
-    return Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
+    start = Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
+    if not settings.postures:
+        return start
+    if roll_about not in settings.postures:
+        raise InputError(
+            f"start={settings.name} has no posture for behaviour.roll_about={roll_about}; "
+            f"it has: {', '.join(settings.postures)}"
+        )
+    posture = settings.postures[roll_about]
+    pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
+    pose += generator.uniform(-settings.scatter, settings.scatter, len(pose))
+    return replace(
+        start, pitch=start.pitch + posture.pitch, pose=np.clip(pose, *model.joint_range.T)
+    )
 
 
-def place(model: Model, data: mujoco.MjData, start: Start, pose: Array) -> None:
-    """Put the character into `pose` (nu,) [rad], its lowest point on the ground, moving.
+def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
+    """Angles by joint name to an array (nu,) in motor order."""
+    pose = np.zeros(len(model.joint_names))
+    for name, angle in angles.items():
+        named = (name, f"{name}_l", f"{name}_r")
+        found = [i for i, joint in enumerate(model.joint_names) if joint in named]
+        if not found:
+            raise InputError(
+                f"{key} names the unknown joint {name!r}; valid: {', '.join(model.joint_names)}"
+            )
+        pose[found] = angle
+    return pose
 
-    On a slope, pitch and velocity are relative to it.
+
+def place(model: Model, data: mujoco.MjData, start: Start, orientation: Array, pose: Array) -> None:
+    """Put the character on the ground, moving. On a slope, pitch and velocity are relative to it.
+
+    Args:
+        orientation: (4,) of the pelvis before it is pitched, unit quaternion.
+        pose: (nu,) [rad], unless the start has one.
     """
     mj = model.mj
     mujoco.mj_resetData(mj, data)
-    data.qpos[7:] = pose
+    data.qpos[model.angles] = pose if start.pose is None else start.pose
     slope = model.ground.slope
-    half = 0.5 * (start.pitch - slope)
-    data.qpos[3:7] = [np.cos(half), 0.0, np.sin(half), 0.0]
+    pitch = np.array([0.0, start.pitch - slope, 0.0])
+    data.qpos[3:7] = advance(orientation, pitch)
     mujoco.mj_kinematics(mj, data)
     data.qpos[2] -= _clearance(model, data)
     mujoco.mj_kinematics(mj, data)
@@ -83,7 +145,7 @@ def _clearance(model: Model, data: mujoco.MjData) -> float:
     """How far the character can be lowered before it touches the ground [m]."""
     mj, ground = model.mj, model.ground
     least = np.inf
-    for geom in np.flatnonzero((mj.geom_bodyid > 0) & (mj.geom_contype > 0)):
+    for geom in np.flatnonzero(is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)):
         capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
         half = mj.geom_size[geom, 1] * capsule * data.geom_xmat[geom].reshape(3, 3)[:, 2]
         for x, y, z in (data.geom_xpos[geom] + half, data.geom_xpos[geom] - half):

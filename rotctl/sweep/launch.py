@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rotctl.errors import InputError
+from rotctl.results import manifest
+from rotctl.results.manifest import Entry
 from rotctl.run import Summary, broke_down, make, publish
-from rotctl.sweep import manifest
 from rotctl.sweep.engines import Engine, Failure
-from rotctl.sweep.manifest import Entry
 from rotctl.sweep.plan import Plan, Planned
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 from rotctl.config import Config
 from rotctl.errors import InputError, LogError
-from rotctl.log import collect
-from rotctl.run import LOG_NAME, Summary, stored
+from rotctl.log import LOG_NAME, collect
+from rotctl.results.code import code_version
+from rotctl.run import Summary, stored
 from rotctl.scenario import model_of, run_id
-from rotctl.sweep.code import code_version
 from rotctl.sweep.points import Point
 
 

@@ -16,6 +16,7 @@ from hydra.core.override_parser.types import Glob, Override, OverrideType
 from rotctl.config import Config, check, composed, parsed, to_dict
 from rotctl.errors import InputError
 from rotctl.listing import choices
+from rotctl.results.keys import value_at
 
 MOST_POINTS = 100_000
 
@@ -56,15 +57,6 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
     for grid in grids:
         for overrides in product(*grid):
             yield Point(overrides, _config(overrides, bases))
-
-
-def value_at(data: Any, key: str) -> Any:
-    """What plain config data have at a dotted key; the name, where that is a group's choice."""
-    for part in key.split("."):
-        if not isinstance(data, dict) or part not in data:
-            return None
-        data = data[part]
-    return data["name"] if isinstance(data, dict) and "name" in data else data
 
 
 _parsed = cache(parsed)

@@ -7,7 +7,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from rotctl.run import LOG_NAME, make
+from rotctl.log import LOG_NAME
+from rotctl.run import make
 from rotctl.sweep.launch import Tally
 from rotctl.sweep.plan import Plan, Planned
 from rotctl.sweep.progress import duration

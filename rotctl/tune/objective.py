@@ -16,7 +16,7 @@ class Rolled:
         wanted: simulated time asked for [s].
         revolutions: in-plane, in the direction commanded [rev].
         drift: largest distance from the line of travel [m].
-        heading: of the trunk's lateral axis at the end, against the rolling axis [deg].
+        heading: of the trunk's axis at the end, against the rolling axis [deg].
     """
 
     survived: float

@@ -99,7 +99,7 @@ class Stopping:
     Attributes:
         stall_time: without `stall_progress` [s].
         stall_progress: in-plane, in the direction commanded [rev].
-        off_axis: of the trunk's lateral axis from the rolling axis [deg].
+        off_axis: of the trunk's axis from the rolling axis [deg].
     """
 
     stall_time: Positive

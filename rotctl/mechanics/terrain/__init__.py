@@ -5,17 +5,19 @@ from typing import Annotated
 from pydantic import Field
 
 from rotctl.mechanics.terrain.ground import CHARACTER_CONTACT, GROUND_CONTACT, Ground, add_tiles
+from rotctl.mechanics.terrain.hazards import Hazards
 from rotctl.mechanics.terrain.plane import Flat, Plane, Slope
 from rotctl.mechanics.terrain.stairs import Stairs
 from rotctl.mechanics.terrain.uneven import Uneven
 
-Terrain = Annotated[Flat | Slope | Stairs | Uneven, Field(discriminator="kind")]
+Terrain = Annotated[Flat | Hazards | Slope | Stairs | Uneven, Field(discriminator="kind")]
 
 __all__ = [
     "CHARACTER_CONTACT",
     "GROUND_CONTACT",
     "Flat",
     "Ground",
+    "Hazards",
     "Plane",
     "Slope",
     "Stairs",

@@ -28,7 +28,7 @@ class Ground(Protocol):
         ...
 
     def add(self, spec: mujoco.MjSpec) -> None:
-        """Add the ground to a model."""
+        """Add the ground to a model in which the character is already."""
         ...
 
 
@@ -48,12 +48,11 @@ def add_tiles(spec: mujoco.MjSpec) -> None:
 
 
 def add_geom(spec: mujoco.MjSpec, name: str, friction: float, **shape: object) -> None:
-    """Add one solid piece of ground to the world."""
+    """Add one solid piece of ground to the world; tiled, unless `shape` says otherwise."""
     spec.worldbody.add_geom(
         name=name,
         contype=GROUND_CONTACT,
         conaffinity=CHARACTER_CONTACT,
         friction=[friction, 0.0, 0.0],
-        material="tiles",
-        **shape,
+        **({"material": "tiles"} | shape),
     )

@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from rotctl.errors import InputError, LogError
-from rotctl.log import read_attributes
-from rotctl.run import LOG_NAME
-from rotctl.sweep.code import code_version
-from rotctl.sweep.manifest import MANIFEST_NAME, Entry, read
+from rotctl.log import LOG_NAME, read_attributes
+from rotctl.results.code import code_version
+from rotctl.results.manifest import MANIFEST_NAME, Entry, read
 
+ORIGIN = ("machine", "versions", "git_commit", "git_dirty", "wall_time")
+LARGE = 1e300  # no number in a summary is, and none is infinite
 DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
 
 
@@ -31,6 +32,7 @@ class Found:
         log: its log, relative to the folder.
         config: its config, as YAML.
         values: what the sweep says of its config, if a sweep made it.
+        origin: the log's `machine`, `versions`, `git_commit`, `git_dirty` and `wall_time`.
     """
 
     run_id: str
@@ -41,6 +43,7 @@ class Found:
     log: str = ""
     config: str = ""
     values: Mapping[str, Any] = field(default_factory=dict)
+    origin: Mapping[str, Any] = field(default_factory=dict)
 
 
 def found(folder: Path) -> tuple[list[Found], list[str]]:
@@ -75,19 +78,36 @@ def found(folder: Path) -> tuple[list[Found], list[str]]:
 def _logged(path: Path, log: str) -> Found:
     try:
         attributes = read_attributes(path)
-        outcome = json.loads(str(attributes["outcome"]))
-        if not isinstance(outcome, dict):
-            raise LogError("outcome is not a JSON object")
         return Found(
             str(attributes["run_id"]),
             DONE,
-            outcome=outcome,
+            outcome=_summary(str(attributes["outcome"])),
             code=code_version(attributes),
             log=log,
             config=str(attributes["config"]),
+            origin={name: attributes[name] for name in ORIGIN},
         )
-    except (LogError, ValueError, RecursionError) as error:
+    except LogError as error:
         return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
+
+
+def _summary(text: str) -> dict[str, Any]:
+    """The outcome of a log.
+
+    Raises:
+        LogError: it is not what rotctl writes.
+    """
+    try:
+        outcome = json.loads(text)
+    except (ValueError, RecursionError):
+        raise LogError("outcome is not JSON") from None
+    if not isinstance(outcome, dict) or not isinstance(outcome.get("success"), bool):
+        raise LogError("outcome does not say whether it is a success")
+    for name, value in outcome.items():
+        number = isinstance(value, int | float) and abs(value) < LARGE
+        if not (number or value is None or isinstance(value, str)):
+            raise LogError(f"outcome has no plain value for {name!r:.60}")
+    return outcome
 
 
 def _unlogged(entry: Entry) -> Found:

@@ -5,17 +5,16 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
-from math import sqrt
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from rotctl.errors import InputError
-from rotctl.sweep.found import DONE
-from rotctl.sweep.table import Table
+from rotctl.metrics.rates import wilson
+from rotctl.results.found import DONE
+from rotctl.results.table import Table
 
-Z_95 = 1.959963984540054  # two-sided 95 % of the normal distribution
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
 
 
@@ -35,16 +34,6 @@ class Groups:
     keys: list[str]
     metrics: list[str]
     notes: list[str]
-
-
-def wilson(succeeded: int, n: int, z: float = Z_95) -> tuple[float, float]:
-    """Wilson's score interval of a rate; all of [0, 1] if nothing was tried."""
-    if n == 0:
-        return 0.0, 1.0
-    rate, share = succeeded / n, z * z / n
-    middle = (rate + share / 2) / (1 + share)
-    half = z / (1 + share) * sqrt(rate * (1 - rate) / n + share / (4 * n))
-    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) -> Groups:
@@ -95,7 +84,7 @@ def _measured(group: pd.DataFrame, metrics: list[str]) -> dict[str, object]:
         "no_result": len(group) - n,
     }
     for metric in metrics:
-        values = pd.to_numeric(done[metric], errors="coerce")
+        values = pd.to_numeric(done[metric], errors="coerce").astype(float)
         for name, share in QUARTILES.items():
             row[f"{metric}_{name}"] = values.quantile(share)
     return row

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -11,8 +11,8 @@ from typing import Any
 import pandas as pd
 import yaml
 
-from rotctl.sweep.found import DAMAGED, FAILED, MISSING, Found, found
-from rotctl.sweep.points import value_at
+from rotctl.results.found import DAMAGED, FAILED, MISSING, Found, found
+from rotctl.results.keys import value_at
 
 SUMMARY_TEXT = ("run_id", "behaviour", "seed", "success", "failure_reason")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -42,8 +42,12 @@ def table(folder: Path) -> Table:
     Raises:
         InputError: there is no such folder, or no run in it.
     """
-    runs, notes = found(folder)
-    configs = {run.run_id: _config(run.config) for run in runs if run.config}
+    return tabulated(*found(folder))
+
+
+def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
+    """Runs that were found, in the order of their keys."""
+    configs = {run.run_id: config_of(run.config) for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
     keys += [key for key in _differing(configs.values()) if key not in keys]
     keys = [*(key for key in keys if key != "seed"), "seed"]
@@ -82,12 +86,17 @@ def _missing(runs: Iterable[Found]) -> list[str]:
     return notes
 
 
-def _config(text: str) -> dict[str, Any]:
+def config_of(text: str) -> dict[str, Any]:
     """The config of a log; runs differ mostly in their seed, so the rest is parsed once."""
     seed = _SEED.search(text)
     if not seed:
         return _parsed(text)
-    return {**_parsed(_SEED.sub("", text)), "seed": int(seed[1])}
+    return {**_parsed(without_seed(text)), "seed": int(seed[1])}
+
+
+def without_seed(text: str) -> str:
+    """The config of a log less the line with its seed."""
+    return _SEED.sub("", text)
 
 
 @cache

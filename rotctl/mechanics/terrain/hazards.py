@@ -1,0 +1,147 @@
+"""Level ground with hazards to roll over: fixed low bars across the way, and loose boxes."""
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import Annotated, ClassVar, Literal
+
+import mujoco
+import numpy as np
+from pydantic import Field, Strict
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.mechanics.terrain.ground import CHARACTER_CONTACT, GROUND_CONTACT, add_geom
+from rotctl.mechanics.terrain.plane import Plane
+from rotctl.rotations import Array
+from rotctl.settings import STRICT, NonNegative, Positive, Range
+
+FLOOR_PART = 0.05  # [m] of a bar that is below the ground
+BAR_COLOUR = (0.36, 0.42, 0.50, 1.0)
+BOX_COLOUR = (0.80, 0.60, 0.36, 1.0)
+
+
+@validated(frozen=True, config=STRICT)
+class Hazards:
+    """Bars and boxes, one after the other along the way in random order.
+
+    Attributes:
+        bars, boxes: how many of them.
+        bar_height, bar_depth, bar_width: up, along the way and across it [m].
+        bar_turn, box_turn: largest angle against the way, to either side [rad].
+        box_edge: edges of a box, each drawn by itself [m].
+        box_density: [kg/m3].
+        box_aside: how far from the line of travel a box may stand, to either side [m].
+        spacing: from one thing to the next, on average [m].
+        run_in: from the start to where the first may be [m].
+    """
+
+    name: str
+    seeded: ClassVar[bool] = True
+    kind: Literal["hazards"]
+    friction: Positive
+    bars: Annotated[int, Strict(), Field(ge=0, le=200)]
+    bar_height: Range
+    bar_depth: Range
+    bar_width: Positive
+    bar_turn: NonNegative
+    boxes: Annotated[int, Strict(), Field(ge=0, le=30)]
+    box_edge: Range
+    box_density: Positive
+    box_aside: NonNegative
+    box_turn: NonNegative
+    spacing: Positive
+    run_in: NonNegative
+    description: str = ""
+
+    def make(self, generator: np.random.Generator) -> "HazardousGround":
+        """The ground of one run, drawn from `generator`."""
+        kinds = generator.permutation([True] * self.bars + [False] * self.boxes)
+        bars, boxes = [], []
+        for i, is_bar in enumerate(kinds):
+            x = self.run_in + self.spacing * (i + generator.uniform(0.25, 0.75))
+            if is_bar:
+                depth = generator.uniform(*self.bar_depth)
+                height = generator.uniform(*self.bar_height)
+                turn = generator.uniform(-self.bar_turn, self.bar_turn)
+                bars.append(Cuboid((x, 0.0), (depth, self.bar_width, height), turn))
+            else:
+                y = generator.uniform(-self.box_aside, self.box_aside)
+                length, width, height = generator.uniform(*self.box_edge, 3)
+                turn = generator.uniform(-self.box_turn, self.box_turn)
+                boxes.append(Cuboid((x, y), (length, width, height), turn))
+        return HazardousGround(self.friction, tuple(bars), tuple(boxes), self.box_density)
+
+
+@dataclass(frozen=True)
+class Cuboid:
+    """A box on level ground: centre (x, y) [m], edges [m], turned by an angle about z [rad]."""
+
+    centre: tuple[float, float]
+    edges: tuple[float, float, float]
+    turn: float
+
+    def covers(self, x: float, y: float) -> bool:
+        """Whether it stands on world (x, y) [m]."""
+        c, s = cos(self.turn), sin(self.turn)
+        dx, dy = x - self.centre[0], y - self.centre[1]
+        along, across = c * dx + s * dy, c * dy - s * dx
+        return abs(along) <= 0.5 * self.edges[0] and abs(across) <= 0.5 * self.edges[1]
+
+    @property
+    def quaternion(self) -> list[float]:
+        """Its orientation (4,)."""
+        return [cos(0.5 * self.turn), 0.0, 0.0, sin(0.5 * self.turn)]
+
+
+@dataclass(frozen=True)
+class HazardousGround:
+    """A level plane with fixed bars, and with loose boxes that the character may push about.
+
+    What it says of heights is of plane and bars: boxes do not stay where they are.
+    """
+
+    friction: float
+    bars: tuple[Cuboid, ...]
+    boxes: tuple[Cuboid, ...]
+    box_density: float
+    slope: float = 0.0
+
+    def height(self, x: float, y: float) -> float:
+        """See `Ground`."""
+        return max((bar.edges[2] for bar in self.bars if bar.covers(x, y)), default=0.0)
+
+    def normal(self, x: float, y: float) -> Array:
+        """See `Ground`; of a bar's top, also at its sides."""
+        return np.array([0.0, 0.0, 1.0])
+
+    def add(self, spec: mujoco.MjSpec) -> None:
+        """See `Ground`."""
+        Plane(self.friction, 0.0).add(spec)
+        for i, bar in enumerate(self.bars):
+            depth, width, height = bar.edges
+            add_geom(
+                spec,
+                f"bar_{i}",
+                self.friction,
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                size=[0.5 * depth, 0.5 * width, 0.5 * (height + FLOOR_PART)],
+                pos=[*bar.centre, 0.5 * (height - FLOOR_PART)],
+                quat=bar.quaternion,
+                material="",
+                rgba=BAR_COLOUR,
+            )
+        for i, box in enumerate(self.boxes):
+            half = [0.5 * edge for edge in box.edges]
+            body = spec.worldbody.add_body(
+                name=f"box_{i}", pos=[*box.centre, half[2]], quat=box.quaternion
+            )
+            body.add_freejoint(name=f"box_{i}")
+            body.add_geom(
+                name=f"box_{i}",
+                type=mujoco.mjtGeom.mjGEOM_BOX,
+                size=half,
+                density=self.box_density,
+                friction=[self.friction, 0.0, 0.0],
+                contype=GROUND_CONTACT,
+                conaffinity=CHARACTER_CONTACT | GROUND_CONTACT,
+                rgba=BOX_COLOUR,
+            )

@@ -1,0 +1,177 @@
+"""Claims: one sentence of a paper as numbers, and the verdict of the runs that it is about."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.metrics.rates import wilson
+from rotctl.settings import STRICT, Finite, NonNegative
+
+if TYPE_CHECKING:  # pandas takes half a second, and who plans a sweep needs none
+    import pandas as pd
+
+NOT_TESTED, NOT_REPRODUCED = "not tested", "not reproduced"
+PARTLY, REPRODUCED = "partly", "reproduced"
+VERDICTS = (NOT_TESTED, NOT_REPRODUCED, PARTLY, REPRODUCED)  # from worst to best
+SUCCESS_RATE = "success_rate"
+
+Where = dict[str, bool | int | float | str]
+
+
+@validated(frozen=True, config=STRICT)
+class Claim:
+    """One sentence of a paper, or of ours, as numbers.
+
+    Attributes:
+        metric: `success_rate`, or a column of the summary, of which the median counts.
+        expected: the value, in the unit of the metric.
+        tolerance: how far the wrong side of it still counts; either side, if `near`.
+        comparison: which side of `expected` is the right one.
+        where: column -> value of the runs that it is about; all runs if empty.
+    """
+
+    id: str
+    metric: str
+    expected: Finite
+    tolerance: NonNegative
+    source: str
+    comparison: Literal["near", "at_least", "at_most"] = "near"
+    note: str = ""
+    where: Where = field(default_factory=dict)
+
+    def gap(self, value: float) -> float:
+        """How far a value is on the wrong side, in the unit of the metric; negative: not at all."""
+        above = value - self.expected
+        return {"near": abs(above), "at_least": -above, "at_most": above}[self.comparison]
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A rate, or the median of a quantity.
+
+    Attributes:
+        value: None if nothing was measured.
+        low: Wilson's 95 % interval of a rate, quartiles of the rest.
+        high: see `low`.
+        runs: how many it comes from.
+    """
+
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    runs: int = 0
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim with its verdict.
+
+    Attributes:
+        missing: runs that the claim is about without a result.
+        remarks: what a reader should know of it, one line each.
+    """
+
+    claim: Claim
+    verdict: str
+    measured: Measured
+    missing: int
+    remarks: tuple[str, ...]
+
+
+def judge(claim: Claim, table: "pd.DataFrame", keys: Sequence[str]) -> Judged:
+    """Judge a claim.
+
+    *Reproduced*: the value misses what is expected by no more than the tolerance, and every run
+    has a result. *Partly*: it misses by no more than twice the tolerance, or the interval of a
+    rate reaches as far as the tolerance, or runs are missing. *Not tested*: no run has a result.
+
+    Args:
+        table: a row a run; `success` is empty where a run has no result.
+        keys: its columns that are config keys.
+    """
+    about = picked(table, claim.where)
+    done = about[about["success"].notna()]
+    missing = len(about) - len(done)
+    remarks = _mixed(claim, done, keys) if len(done) else [_untested(claim, table, about)]
+    if missing:
+        remarks.append(f"{missing} of {len(about)} runs have no result")
+    if len(done) and claim.metric not in (SUCCESS_RATE, *done.columns):
+        remarks.append(f"the summary has no {claim.metric!r}")
+    found = measured(done, claim.metric)
+    return Judged(claim, _verdict(claim, found, missing), found, missing, tuple(remarks))
+
+
+def picked(table: "pd.DataFrame", where: Mapping[str, Any]) -> "pd.DataFrame":
+    """The runs of a table that have these values; none if a column is not there."""
+    for key, value in where.items():
+        # A key that is also measured is `config.<key>`: what was asked for.
+        column = f"config.{key}" if f"config.{key}" in table else key
+        if column not in table:
+            return table.iloc[:0]
+        table = table[table[column] == value]
+    return table
+
+
+def measured(done: "pd.DataFrame", metric: str) -> Measured:
+    """A metric over runs with results; values that are no finite numbers are left out."""
+    if metric == SUCCESS_RATE:
+        n, succeeded = len(done), int(done["success"].astype(bool).sum())
+        return Measured(succeeded / n, *wilson(succeeded, n), n) if n else Measured()
+    values = [
+        float(value)
+        for value in done.get(metric, [])
+        if isinstance(value, int | float) and math.isfinite(value)
+    ]
+    if not values:
+        return Measured()
+    import numpy as np
+
+    low, middle, high = np.quantile(values, [0.25, 0.5, 0.75]).tolist()
+    return Measured(middle, low, high, len(values))
+
+
+def overall(verdicts: Sequence[str]) -> str:
+    """One verdict for several claims: partly, unless all or none of them hold."""
+    if set(verdicts) == {REPRODUCED}:
+        return REPRODUCED
+    if set(verdicts) <= {NOT_TESTED, NOT_REPRODUCED}:
+        return max(verdicts, key=VERDICTS.index, default=NOT_TESTED)
+    return PARTLY
+
+
+_ROUNDING = 1e-9  # 19 / 20 is 0.95
+
+
+def _verdict(claim: Claim, found: Measured, missing: int) -> str:
+    if found.value is None:
+        return NOT_TESTED
+    if claim.gap(found.value) <= claim.tolerance + _ROUNDING:
+        return PARTLY if missing else REPRODUCED
+    if claim.gap(found.value) <= 2 * claim.tolerance + _ROUNDING:
+        return PARTLY
+    if claim.metric != SUCCESS_RATE or found.low is None or found.high is None:
+        return NOT_REPRODUCED
+    nearest = min(max(claim.expected, found.low), found.high)
+    return PARTLY if claim.gap(nearest) <= claim.tolerance + _ROUNDING else NOT_REPRODUCED
+
+
+def _untested(claim: Claim, table: "pd.DataFrame", about: "pd.DataFrame") -> str:
+    if len(about):
+        return "no run has a result"
+    absent = [k for k in claim.where if k not in table and f"config.{k}" not in table]
+    return f"no column {absent[0]!r} in the runs" if absent else "no such run in the sweep"
+
+
+def _mixed(claim: Claim, done: "pd.DataFrame", keys: Sequence[str]) -> list[str]:
+    """In what the runs differ that should be alike."""
+    differing = [
+        key
+        for key in keys
+        if key != "seed" and key not in claim.where and done[key].nunique(dropna=False) > 1
+    ]
+    remarks = [f"over runs that differ in {', '.join(differing)}"] if differing else []
+    codes = done["code"].nunique() if "code" in done else 1
+    return remarks + ([f"over runs of {codes} versions of the code"] if codes > 1 else [])

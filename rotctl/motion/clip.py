@@ -1,0 +1,126 @@
+"""A clip: one cycle of a reference motion, indexed by the in-plane excursion instead of time.
+
+Sample k of n is the pose at phase 2 pi k / n, and the cycle closes. The phase is that of the
+rolling behaviour: how far the body has turned about the world's +y since its pelvis was
+upright (log roll: supine), while it travels to +x. So a forward roll is face down at pi/2
+and on the upper back at pi; a backward roll lies on its back at pi/2.
+"""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.errors import InputError
+from rotctl.listing import conf_dir
+from rotctl.mechanics.model import Model
+from rotctl.motion.pose_pair import SIDES
+from rotctl.motion.untrusted import read_yaml
+from rotctl.rotations import Array
+from rotctl.settings import STRICT, Finite
+
+MAX_SAMPLES = 3600
+MAX_JOINTS = 500
+
+RollAbout = Literal["left", "right", "head"]
+Samples = Annotated[list[Finite], Field(min_length=12, max_length=MAX_SAMPLES)]
+Quaternion = tuple[Finite, Finite, Finite, Finite]
+
+
+@validated(frozen=True, config=STRICT)
+class Clip:
+    """One cycle of a reference motion.
+
+    Attributes:
+        name: what it is called.
+        roll_about: the trunk axis along world +y: `left` rolls forwards, `right` backwards,
+            `head` sideways, as a log.
+        joints: joint name to n samples over the phase [rad]; a name without a side is both
+            sides, a joint not named is held at 0.
+        pelvis: n orientations (w, x, y, z) of the pelvis in the world; without them it turns
+            evenly and does not tilt.
+        character: what the angles were made for.
+        source: where the motion comes from.
+        licence: and on what terms.
+        rate: of the source [rev/s]; a clip has no time of its own.
+        loop_gap: what was distributed over the cycle to close it, the largest joint's [rad].
+    """
+
+    name: str
+    roll_about: RollAbout
+    joints: Annotated[dict[str, Samples], Field(min_length=1, max_length=MAX_JOINTS)]
+    pelvis: Annotated[list[Quaternion], Field(max_length=MAX_SAMPLES)] | None = None
+    character: str = ""
+    source: str = ""
+    licence: str = ""
+    description: str = ""
+    rate: Finite | None = None
+    loop_gap: Finite | None = None
+
+    def __post_init__(self) -> None:
+        tracks: dict[str, list[Finite] | list[Quaternion]] = {
+            f"joints.{name}": samples for name, samples in self.joints.items()
+        }
+        if self.pelvis is not None:
+            tracks["pelvis"] = self.pelvis
+            if min(sum(x * x for x in q) for q in self.pelvis) < 0.25:
+                raise ValueError("pelvis: a quaternion must have length 1")
+        for where, samples in tracks.items():
+            if len(samples) != self.samples:
+                raise ValueError(
+                    f"{where} has {len(samples)} samples, {next(iter(tracks))} has {self.samples}"
+                )
+
+    @property
+    def samples(self) -> int:
+        """Number n of samples over the cycle."""
+        return len(next(iter(self.joints.values())))
+
+    def poses(self, model: Model) -> Array:
+        """The samples (n, nu) in the model's motor order, within the joint ranges [rad].
+
+        Raises:
+            InputError: the clip names a joint that the model has not.
+        """
+        found = np.zeros((self.samples, len(model.joint_names)))
+        for name, samples in self.joints.items():
+            found[:, joint_columns(model, name, f"clip {self.name!r}")] = np.array([samples]).T
+        return np.asarray(np.clip(found, *model.joint_range.T))
+
+
+def joint_columns(model: Model, name: str, whose: str) -> list[int]:
+    """Which motors a joint's name stands for; a name without a side is both sides.
+
+    Raises:
+        InputError: none; the message says whose name it was.
+    """
+    names = (name, *(name + side for side in SIDES))
+    found = [i for i, joint in enumerate(model.joint_names) if joint in names]
+    if not found:
+        raise InputError(
+            f"{whose} names the unknown joint {name!r}; "
+            f"the character's: {', '.join(model.joint_names)}"
+        )
+    return found
+
+
+def names() -> list[str]:
+    """The clips that come with rotctl."""
+    return sorted(path.stem for path in (conf_dir() / "motion").glob("*.yaml"))
+
+
+def load_clip(name: str) -> Clip:
+    """Read a clip: one of `names()`, or the path of any file (a slash or .yaml in it).
+
+    Raises:
+        InputError: one line that names the file, the bad value and what is valid.
+    """
+    if "/" in name or name.endswith(".yaml"):
+        return read_yaml(Path(name), Clip)
+    if name not in names():
+        raise InputError(
+            f"{name}: no such clip; valid: {', '.join(names())}, or the path of a .yaml file"
+        )
+    return read_yaml(conf_dir() / "motion" / f"{name}.yaml", Clip)

@@ -1,0 +1,88 @@
+"""Phase-locked reference poses: r_a and r_b a little after and before where the roll is now.
+
+[Brown2013] section 4.3 with excursion in place of time: r_a = r(theta + lead + window) and
+r_b = r(theta + lead - window), where r is one cycle of a clip over the phase theta.
+"""
+
+from dataclasses import dataclass
+from math import floor, tau
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.mechanics.model import Model
+from rotctl.motion.clip import Clip
+from rotctl.rotations import Array
+from rotctl.settings import STRICT, Finite, NonNegative
+
+STEPS = 720  # of the table that `at` reads: half a degree of phase
+
+
+@validated(frozen=True, config=STRICT)
+class ReferenceSettings:
+    """Which clip is followed, and how.
+
+    Attributes:
+        clip: a name in `conf/motion/`, or the path of a clip.
+        window: half the distance between r_a and r_b [rev of phase].
+        lead: by how much their middle is ahead of the roll [rev of phase]; a pose takes
+            time to reach.
+    """
+
+    clip: str
+    window: Annotated[NonNegative, Field(le=0.5)]
+    lead: Annotated[Finite, Field(ge=-0.5, le=0.5)]
+
+
+@dataclass(frozen=True)
+class ReferencePair:
+    """The two poses over the phase.
+
+    Attributes:
+        cycle: (n, nu) the clip at even phases [rad].
+        table: (STEPS + 1, 2, nu) r_a and r_b at even phases of one cycle [rad]; the last
+            row is the first.
+    """
+
+    cycle: Array
+    table: Array
+
+    def start(self, phase: float) -> Array:
+        """The pose (nu,) [rad] to begin in at a phase [rad]: the clip's own."""
+        return np.asarray(periodic(self.cycle, np.array([phase / tau]))[0])
+
+    def at(self, phase: float) -> Array:
+        """Both poses (2, nu) [rad] at a phase [rad], between the two nearest rows."""
+        place = phase / tau % 1.0 * STEPS
+        row = min(floor(place), STEPS - 1)
+        low = self.table[row]
+        return np.asarray(low + (place - row) * (self.table[row + 1] - low))
+
+
+def make_reference_pair(model: Model, clip: Clip, window: float, lead: float) -> ReferencePair:
+    """The poses around the phase of a clip.
+
+    Args:
+        window: half the distance between r_a and r_b [rev of phase].
+        lead: of their middle [rev of phase].
+
+    Raises:
+        InputError: the clip names a joint that the model has not.
+    """
+    phases = np.linspace(0.0, 1.0, STEPS + 1)
+    poses = clip.poses(model)
+    return ReferencePair(
+        poses,
+        np.stack([periodic(poses, phases + lead + side * window) for side in (1.0, -1.0)], axis=1),
+    )
+
+
+def periodic(samples: Array, places: Array) -> Array:
+    """Samples (n, k), even over a closed cycle, at places (m,) [cycles]; linear between."""
+    n = len(samples)
+    place = np.mod(places, 1.0) * n
+    before = np.minimum(place.astype(int), n - 1)
+    share = (place - before)[:, None]
+    return np.asarray((1.0 - share) * samples[before] + share * samples[(before + 1) % n])

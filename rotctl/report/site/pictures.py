@@ -1,0 +1,77 @@
+"""Filmstrips and replays of the runs that stand for a row."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from rotctl.errors import RotctlError
+from rotctl.log import RunLog
+from rotctl.report import replay
+from rotctl.report.filmstrip import strip
+from rotctl.report.site.rows import Row
+from rotctl.report.title import title
+from rotctl.results.found import Found
+
+FRAMES, SIZE = 6, (240, 188)  # of a filmstrip; pixels of a frame
+SCRIPT = "replay.js"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What shows one run.
+
+    Attributes:
+        role: `median` or `worst`.
+        run: seed and run id.
+        verdict: how it ended.
+        replay: address of its page; empty if there is none.
+        strip: address of its filmstrip; empty if there is none.
+        trouble: why something is missing.
+    """
+
+    role: str
+    run: str
+    verdict: str
+    replay: str
+    strip: str
+    trouble: str
+
+
+Put = Callable[[str, bytes], object]
+
+
+def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
+    """Draw the median and the worst run of a row.
+
+    Args:
+        folder: of the sweep.
+        name: what addresses begin with.
+        put: takes an address and the content of every file.
+    """
+    found = []
+    for role, run in (("median", row.median), ("worst", row.poorest)):
+        if run is not None:
+            found.append(_picture(role, run, folder, f"{name}-{role}", put))
+    return found
+
+
+def _picture(role: str, run: Found, folder: Path, name: str, put: Put) -> Picture:
+    address, drawn, trouble = "", "", ""
+    try:
+        log = RunLog.open(folder / run.log)
+        top = title(log)
+        site = replay.Site(f"../{SCRIPT}", "../index.html")
+        put(f"replays/{name}.html", replay.page(log, site=site).encode())
+        address = f"replays/{name}.html"
+    except RotctlError as error:
+        return Picture(role, run.run_id, "", "", "", f"no replay: {_short(error, folder)}")
+    try:
+        put(f"pictures/{name}.png", strip(log, FRAMES, SIZE))
+        drawn = f"pictures/{name}.png"
+    except RotctlError as error:
+        trouble = f"no filmstrip: {_short(error, folder)}"
+    return Picture(role, " ".join(top.about.split()), top.verdict, address, drawn, trouble)
+
+
+def _short(error: RotctlError, folder: Path) -> str:
+    return str(error).replace(f"{folder}/", "")

@@ -1,0 +1,121 @@
+"""The rows of the reproduction page: the runs that claims are about, and how they did."""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pandas as pd
+
+from rotctl.metrics.claims import SUCCESS_RATE, Judged, Measured, judge, measured, overall, picked
+from rotctl.report.site.words import kind, values
+from rotctl.report.title import plain
+from rotctl.results.experiments import Experiment
+from rotctl.results.found import Found
+from rotctl.results.keys import value_at
+from rotctl.results.sweeps import Sweep
+from rotctl.results.table import config_of
+
+SHOWN = (
+    "angular_velocity_mean",
+    "angular_velocity_commanded",
+    "speed_mean",
+    "speed_commanded",
+    "longest_stall",
+)
+
+
+@dataclass(frozen=True)
+class Row:
+    """Runs that belong together.
+
+    Attributes:
+        name: what tells them from others.
+        about: the behaviour's description.
+        source: of the behaviour.
+        verdict: of all its claims together; empty if it has none.
+        metrics: `success_rate` and those of `SHOWN` -> what was measured.
+        worst: of the run with the longest stall [s].
+        missing: runs without a result.
+        failures: kind of failure -> how many, most first.
+        median: the run in the middle, by success and then revolutions; None without results.
+        poorest: the first in that order, if it is another one.
+        deviations: from what is reproduced.
+    """
+
+    name: str
+    about: str
+    source: str
+    claims: tuple[Judged, ...]
+    verdict: str
+    metrics: Mapping[str, Measured]
+    worst: float | None
+    missing: int
+    failures: tuple[tuple[str, int], ...]
+    median: Found | None
+    poorest: Found | None
+    deviations: tuple[str, ...]
+
+
+def rows(sweep: Sweep, experiment: Experiment | None) -> list[Row]:
+    """One row for each set of runs that claims are about; without claims, one a behaviour."""
+    table = sweep.table
+    if experiment is None or not experiment.claims:
+        names = table.rows["behaviour"].dropna().unique().tolist()
+        return [_row(sweep, {"behaviour": name}, [], experiment) for name in names]
+    groups: dict[tuple[Any, ...], list[Judged]] = {}
+    for claim in experiment.claims:
+        judged = judge(claim, table.rows, table.keys)
+        groups.setdefault(tuple(claim.where.items()), []).append(judged)
+    return [_row(sweep, dict(where), claims, experiment) for where, claims in groups.items()]
+
+
+def _row(
+    sweep: Sweep,
+    where: Mapping[str, Any],
+    claims: Sequence[Judged],
+    experiment: Experiment | None,
+) -> Row:
+    about = picked(sweep.table.rows, where)
+    done = about[about["success"].notna()]
+    failed = done[~done["success"].astype(bool)]
+    reasons = Counter(kind(str(reason)) for reason in failed["failure_reason"])
+    reasons.update(about[about["success"].isna()]["status"].tolist())
+    order = _from_worst(done)
+    median = sweep.runs[order[(len(order) - 1) // 2]] if order else None
+    poorest = sweep.runs[order[0]] if order else None
+    stalls = [v for v in done.get("longest_stall", []) if isinstance(v, float) and math.isfinite(v)]
+    config = config_of(median.config) if median else {}
+    return Row(
+        name=values(where),
+        about=_text(config, "behaviour.description"),
+        source=_text(config, "behaviour.source"),
+        claims=tuple(claims),
+        verdict=overall([claim.verdict for claim in claims]) if claims else "",
+        metrics={name: measured(done, name) for name in (SUCCESS_RATE, *SHOWN)},
+        worst=max(stalls, default=None),
+        missing=len(about) - len(done),
+        failures=tuple(sorted(reasons.items(), key=lambda item: (-item[1], item[0]))),
+        median=median,
+        poorest=poorest if poorest is not median else None,
+        deviations=_deviations(where, experiment),
+    )
+
+
+def _from_worst(done: pd.DataFrame) -> list[str]:
+    """Run ids: those that failed before those that succeeded, few revolutions before many."""
+    turns = pd.to_numeric(done.get("revolutions", pd.Series(0.0, done.index)), errors="coerce")
+    order = pd.DataFrame({"success": done["success"].astype(bool), "turns": turns})
+    index = order.sort_values(["success", "turns"], na_position="first", kind="stable").index
+    return [str(name) for name in done.loc[index, "run_id"]]
+
+
+def _deviations(where: Mapping[str, Any], experiment: Experiment | None) -> tuple[str, ...]:
+    found = experiment.deviations if experiment else []
+    return tuple(d.text for d in found if d.where and d.where.items() <= where.items())
+
+
+def _text(config: Mapping[str, Any], key: str) -> str:
+    value = value_at(config, key)
+    return plain(value) if isinstance(value, str) else ""

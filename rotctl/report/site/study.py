@@ -1,0 +1,114 @@
+"""A sweep and one experiment that it was made for: the rows, and the claims line by line."""
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from rotctl.metrics.claims import (
+    NOT_REPRODUCED,
+    NOT_TESTED,
+    PARTLY,
+    REPRODUCED,
+    SUCCESS_RATE,
+    VERDICTS,
+    Judged,
+    overall,
+)
+from rotctl.report.site.rows import Row, rows
+from rotctl.report.site.words import quantity
+from rotctl.results.experiments import Experiment
+from rotctl.results.sweeps import Sweep
+
+_IN_A_WORD = {REPRODUCED: "Yes", PARTLY: "In part", NOT_REPRODUCED: "No", NOT_TESTED: "Unknown"}
+FEW = 20  # runs; below that a success rate says little
+
+
+@dataclass(frozen=True)
+class Study:
+    """What is judged together.
+
+    Attributes:
+        name: of the experiment; empty without one.
+        experiment: None: there is nothing to judge.
+    """
+
+    name: str
+    sweep: Sweep
+    experiment: Experiment | None
+    rows: list[Row]
+
+    @property
+    def title(self) -> str:
+        """A heading."""
+        return self.experiment.title if self.experiment else self.sweep.name
+
+
+@dataclass(frozen=True)
+class Line:
+    """A judged claim and where it stands; `sweep`, `experiment` and its id name it."""
+
+    sweep: str
+    experiment: str
+    judged: Judged
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Its name."""
+        return self.sweep, self.experiment, self.judged.claim.id
+
+
+def studies(sweep: Sweep) -> list[Study]:
+    """One for each experiment of a sweep; one without claims where it has none."""
+    if not sweep.experiments:
+        return [Study("", sweep, None, rows(sweep, None))]
+    return [Study(name, sweep, each, rows(sweep, each)) for name, each in sweep.experiments.items()]
+
+
+def lines(found: Iterable[Study]) -> list[Line]:
+    """All claims in the order of the page."""
+    return [
+        Line(study.sweep.name, study.name, judged)
+        for study in found
+        for row in study.rows
+        for judged in row.claims
+    ]
+
+
+def tally(found: Sequence[Line]) -> dict[str, int]:
+    """Verdict -> how many claims, from best to worst."""
+    counted = Counter(line.judged.verdict for line in found)
+    return {verdict: counted[verdict] for verdict in reversed(VERDICTS)}
+
+
+def answer(found: Sequence[Line]) -> str:
+    """The sentence that the report is made for."""
+    if not found:
+        return "No claims to judge."
+    word = _IN_A_WORD[overall([line.judged.verdict for line in found])]
+    return f"{word}: {tally(found)[REPRODUCED]} of {len(found)} claims reproduced."
+
+
+def by_quantity(found: Sequence[Line]) -> list[str]:
+    """How many claims on each metric are reproduced, in words."""
+    metrics = dict.fromkeys(line.judged.claim.metric for line in found)
+    of = {m: [x for x in found if x.judged.claim.metric == m] for m in metrics}
+    return [
+        f"{quantity(metric)}: {tally(some)[REPRODUCED]} of {len(some)}"
+        for metric, some in of.items()
+    ]
+
+
+def warnings(study: Study) -> list[str]:
+    """What a reader of the verdicts must know first."""
+    rates = [
+        judged.measured.runs
+        for row in study.rows
+        for judged in row.claims
+        if judged.claim.metric == SUCCESS_RATE and judged.measured.runs
+    ]
+    if not rates or not study.experiment or min(rates) >= FEW:
+        return []
+    return [
+        f"Only {min(rates)} starts a row, so that the intervals are wide. "
+        f"The whole experiment has seed={study.experiment.seeds}."
+    ]

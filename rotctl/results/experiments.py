@@ -1,0 +1,151 @@
+"""Experiments: named sweeps with the claims they are to judge, in `experiments/NAME.yaml`.
+
+A sweep leaves a copy of its experiment in its folder, so that the folder alone says what it is
+to show.
+"""
+
+from dataclasses import field
+from pathlib import Path
+
+import yaml
+from pydantic import TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.errors import InputError
+from rotctl.listing import shipped
+from rotctl.metrics.claims import Claim, Where
+from rotctl.settings import STRICT
+
+PREFIX = "+experiment="
+COPY = "experiment-{}.yaml"
+LARGEST = 1_000_000  # [bytes] of an experiment; people write them
+_TOO_LARGE = f"larger than {LARGEST} bytes"
+
+
+@validated(frozen=True, config=STRICT)
+class Deviation:
+    """Where an experiment differs from what it reproduces, and why.
+
+    Attributes:
+        where: column -> value of the runs that it is about; all runs if empty.
+    """
+
+    text: str
+    where: Where = field(default_factory=dict)
+
+
+@validated(frozen=True, config=STRICT)
+class Experiment:
+    """A sweep that can be named.
+
+    Attributes:
+        source: paper and table.
+        matrix: grids, each a list of overrides in sweep syntax.
+        seeds: values of `seed` in sweep syntax, for each grid.
+        limitations: what its result does not say, one sentence each.
+    """
+
+    title: str
+    source: str
+    matrix: list[list[str]]
+    seeds: str
+    claims: list[Claim]
+    deviations: list[Deviation] = field(default_factory=list)
+    limitations: list[str] = field(default_factory=list)
+
+    def grids(self, further: list[str]) -> list[list[str]]:
+        """The matrix with its seeds, and with further overrides, which replace theirs."""
+        replaced = {_key(override) for override in further}
+        grids = [[*grid, f"seed={self.seeds}"] for grid in self.matrix]
+        return [[*(o for o in grid if _key(o) not in replaced), *further] for grid in grids]
+
+
+def _key(override: str) -> str:
+    return override.partition("=")[0]
+
+
+_ADAPTER = TypeAdapter(Experiment)
+
+
+def names() -> list[str]:
+    """The experiments there are, sorted."""
+    return sorted(path.stem for path in shipped("experiments").glob("*.yaml"))
+
+
+def experiment(name: str) -> Experiment:
+    """An experiment that comes with rotctl.
+
+    Raises:
+        InputError: there is no such experiment, or its file is wrong.
+    """
+    return read(_path(name))
+
+
+def read(path: Path) -> Experiment:
+    """Read the file of an experiment.
+
+    Raises:
+        InputError: it is wrong; one line that says where.
+    """
+    try:
+        if path.stat().st_size > LARGEST:
+            raise InputError(f"{path}: {_TOO_LARGE}")
+        text = path.read_text(encoding="utf-8")
+        return _ADAPTER.validate_python(yaml.safe_load(text))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise InputError(f"{path}: {where}: {first['msg']}") from None
+    except (yaml.YAMLError, RecursionError) as error:
+        raise InputError(f"{path}: is not YAML: {' '.join(str(error).split())}") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from None
+
+
+def copy_into(folder: Path, name: str) -> None:
+    """Leave a copy of an experiment in the folder of its sweep.
+
+    Raises:
+        InputError: there is no such experiment, or the folder cannot be written.
+    """
+    try:
+        (folder / COPY.format(name)).write_bytes(_path(name).read_bytes())
+    except OSError as error:
+        raise InputError(f"cannot write into {folder}: {error.strerror or error}") from None
+
+
+def copies(folder: Path) -> dict[str, Path]:
+    """Name -> file of the experiments in the folder of a sweep, sorted."""
+    before, after = COPY.split("{}")
+    found = sorted(folder.glob(COPY.format("*")))
+    return {path.name.removeprefix(before).removesuffix(after): path for path in found}
+
+
+def named(overrides: list[str]) -> str:
+    """The experiment that a command line names; empty if it names none.
+
+    Raises:
+        InputError: it names more than one.
+    """
+    found = [o.removeprefix(PREFIX) for o in overrides if o.startswith(PREFIX)]
+    if len(found) > 1:
+        raise InputError(f"{PREFIX}{found[1]}: one experiment a sweep")
+    return found[0] if found else ""
+
+
+def matrix(overrides: list[str]) -> list[list[str]]:
+    """The grids that a command line asks for: its own, or those of its experiment.
+
+    Raises:
+        InputError: more than one experiment, or a wrong one.
+    """
+    name = named(overrides)
+    further = [o for o in overrides if not o.startswith(PREFIX)]
+    return experiment(name).grids(further) if name else [overrides]
+
+
+def _path(name: str) -> Path:
+    valid = names()
+    if name not in valid:
+        raise InputError(f"{PREFIX}{name}: no such experiment; valid: {', '.join(valid)}")
+    return shipped("experiments") / f"{name}.yaml"

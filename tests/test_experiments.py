@@ -1,0 +1,152 @@
+"""Experiments: every one that we ship can be read and planned."""
+
+import re
+from dataclasses import fields
+
+import pytest
+
+from rotctl.cli import main
+from rotctl.errors import InputError
+from rotctl.listing import choices, shipped
+from rotctl.metrics.claims import SUCCESS_RATE
+from rotctl.metrics.rolling import RollingMetrics
+from rotctl.results.experiments import copies, experiment, matrix, names, read
+from rotctl.sweep.points import points
+
+TABLE_1 = {  # [rev/s], [m/s]
+    "forward_roll_1": (1.3, 1.2),
+    "forward_roll_2": (0.9, 1.2),
+    "forward_roll_3": (1.5, 1.8),
+    "backward_roll_1": (1.3, 1.0),
+    "backward_roll_2": (1.0, 1.2),
+    "sideways_roll": (1.0, 1.5),
+    "uneven_terrain": (0.9, 1.1),
+    "incline": (1.8, 1.5),
+    "decline": (0.4, 1.0),
+    "stairs": (0.6, 0.3),
+}
+
+
+@pytest.mark.parametrize("name", names())
+def test_each_experiment_plans(name):
+    if name == "table1":
+        _skip_while_rows_are_missing()
+    found = list(points(matrix([f"+experiment={name}"])))
+    seeds = {point.config.seed for point in found}
+    assert seeds
+    assert max(seeds) < 1_000_000  # judging seeds
+    assert len({claim.id for claim in experiment(name).claims}) == len(experiment(name).claims)
+
+
+def _skip_while_rows_are_missing():
+    rows = {grid[0].removeprefix("behaviour=") for grid in experiment("table1").matrix}
+    missing = sorted(rows - set(choices("behaviour")))
+    if missing:
+        pytest.skip(f"conf/behaviour has no {', '.join(missing)} yet")
+
+
+@pytest.mark.parametrize("name", names())
+def test_claims_are_about_runs_that_are_made_and_quantities_that_are_measured(name):
+    found = experiment(name)
+    grids = " ".join(override for grid in found.matrix for override in grid)
+    for claim in found.claims:
+        assert claim.metric in {SUCCESS_RATE, *(field.name for field in fields(RollingMetrics))}
+        for key, value in claim.where.items():
+            assert re.search(rf"\b{key}=\S*\b{value}\b", grids), claim.id
+
+
+def test_table_1_has_the_velocities_of_the_paper():
+    found = experiment("table1")
+    expected = {claim.id: claim.expected for claim in found.claims}
+    for row, (spin, speed) in TABLE_1.items():
+        assert expected[f"{row}.success"] >= 0.9
+        assert (expected[f"{row}.angular_velocity"], expected[f"{row}.speed"]) == (spin, speed)
+    assert len(found.claims) == 3 * len(TABLE_1) == 30
+    for claim in found.claims:
+        if claim.metric != SUCCESS_RATE:
+            assert claim.tolerance == pytest.approx(0.15 * claim.expected)
+
+
+def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys):
+    text = (shipped("experiments") / "forward_roll_1.yaml").read_text()
+    (tmp_path / "wrong.yaml").write_text(text.replace("forward_roll_1,", "no_roll,"))
+    monkeypatch.setattr("rotctl.results.experiments.shipped", lambda name: tmp_path)
+    assert main(["sweep", "+experiment=wrong", "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith('rotctl: behaviour="no_roll": no such choice; valid: ')
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_sweep_leaves_a_copy_of_its_experiment(tmp_path):
+    arguments = ["behaviour=forward_roll_1", "seed=0", "duration=0.5", "--jobs", "1", "--quiet"]
+    command = ["sweep", "+experiment=forward_roll_1", *arguments, "--out", str(tmp_path)]
+    assert main(command) == 0
+    (copy,) = copies(tmp_path).items()
+    assert copy == ("forward_roll_1", tmp_path / "experiment-forward_roll_1.yaml")
+    assert read(copy[1]) == experiment("forward_roll_1")
+
+
+def test_a_huge_or_foreign_copy_is_one_line(tmp_path):
+    path = tmp_path / "experiment-x.yaml"
+    for text, message in (
+        ("x" * 1_000_001, f"{path}: larger than 1000000 bytes"),
+        ("[" * 100_000, f"{path}: is not YAML: "),
+        ("!!python/object/apply:os.system [x]", f"{path}: is not YAML: could not determine a con"),
+    ):
+        path.write_text(text)
+        with pytest.raises(InputError) as error:
+            read(path)
+        assert str(error.value).startswith(message)
+
+
+def test_forward_roll_1_is_fifty_starts_of_both():
+    found = list(points(matrix(["+experiment=forward_roll_1", "duration=1"])))
+    assert len(found) == 100
+    assert {point.config.behaviour.name for point in found} == {
+        "forward_roll_1",
+        "forward_roll_1_phase",
+    }
+    assert {point.config.duration for point in found} == {1.0}
+    assert {claim.metric for claim in experiment("forward_roll_1").claims} == {"success_rate"}
+
+
+def test_further_overrides_replace_its_own():
+    assert matrix(["+experiment=forward_roll_1", "seed=7"]) == [
+        ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=7"]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["+experiment=no"], "+experiment=no: no such experiment; valid: forward_roll_1"),
+        (
+            ["+experiment=forward_roll_1", "+experiment=b"],
+            "+experiment=b: one experiment a sweep",
+        ),
+    ],
+)
+def test_what_is_wrong_is_said(overrides, message):
+    with pytest.raises(InputError) as error:
+        matrix(overrides)
+    assert str(error.value).startswith(message)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("title: x", "source: Field required"),
+        ("{title: x, source: y, matrix: [], seeds: '1', claims: [], tittle: z}", "tittle: "),
+        ("{title: [", "is not YAML: "),
+        ("- 1", ": "),
+    ],
+)
+def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):
+    (tmp_path / "wrong.yaml").write_text(text)
+    monkeypatch.setattr("rotctl.results.experiments.shipped", lambda name: tmp_path)
+    with pytest.raises(InputError) as error:
+        experiment("wrong")
+    assert str(error.value).startswith(f"{tmp_path / 'wrong.yaml'}: ")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)

@@ -1,0 +1,42 @@
+"""Which of the trunk's axes lies on the rolling axis, and how a character is put there."""
+
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rotctl import scenario
+from rotctl.behaviours.rolling import FACING
+from rotctl.config import load
+from rotctl.simulation.start import Start, place
+
+# World direction of the trunk's front, left and up at phase 0.
+AT_PHASE_0 = {
+    "left": ([1, 0, 0], [0, 1, 0], [0, 0, 1]),  # upright, facing the way it rolls
+    "right": ([-1, 0, 0], [0, -1, 0], [0, 0, 1]),  # upright, its back to the way it rolls
+    "head": ([0, 0, 1], [1, 0, 0], [0, 1, 0]),  # on its back, the head to the left of the way
+}
+
+
+@pytest.mark.parametrize("about", FACING)
+def test_orientation_at_phase_0(about):
+    axes = Rotation.from_quat(FACING[about].orientation, scalar_first=True).as_matrix()
+    assert np.abs(axes.T - AT_PHASE_0[about]).max() < 1e-12
+    assert axes @ FACING[about].trunk_axis == pytest.approx([0, 1, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("about", FACING)
+def test_a_start_turns_about_the_rolling_axis(about):
+    made = scenario.build(load([f"behaviour.roll_about={about}"]))
+    data = mujoco.MjData(made.model.mj)
+    for pitch in (0.0, 0.7, 2.0):
+        start = Start(pitch, np.zeros(3), np.zeros(3))
+        place(made.model, data, start, made.behaviour.orientation, np.zeros(made.model.mj.nu))
+        mujoco.mj_kinematics(made.model.mj, data)
+        pelvis = data.xmat[1].reshape(3, 3)
+        expected = Rotation.from_euler("y", pitch).as_matrix() @ np.array(AT_PHASE_0[about]).T
+        assert pelvis == pytest.approx(expected, abs=1e-12)
+        axis = made.behaviour.trunk_axis(SimpleNamespace(trunk_axes=pelvis))
+        assert axis == pytest.approx([0, 1, 0], abs=1e-12)

@@ -1,0 +1,159 @@
+"""Clips, and the poses around a phase of theirs."""
+
+import math
+
+import numpy as np
+import pytest
+import yaml
+
+from rotctl.errors import InputError
+from rotctl.motion import Clip, load_clip, make_reference_pair
+from rotctl.motion.clip import names
+from rotctl.motion.preview import motion_of
+from rotctl.motion.turning import pelvis_turn
+from rotctl.motion.writing import text
+
+N = 24
+WAVE = [1.0 + 0.5 * math.cos(2 * math.pi * k / N) for k in range(N)]
+
+
+def clip(**joints):
+    return Clip(name="wave", roll_about="left", joints=joints or {"knee": WAVE})
+
+
+def column(model, poses, name):
+    return poses[:, model.joint_names.index(name)]
+
+
+def test_poses_ahead_and_behind_at_any_phase(world):
+    model = world.model
+    pair = make_reference_pair(model, clip(knee_l=WAVE), window=0.1, lead=0.05)
+    places = 2 * math.pi * np.arange(N + 1) / N
+    for phase in (-20.0, -0.001, 0.0, 1.0, 2 * math.pi, 3.3, 1e4):
+        found = column(model, pair.at(phase), "knee_l")
+        ahead = [phase + 2 * math.pi * (0.05 + side * 0.1) for side in (1, -1)]
+        wanted = np.interp(np.mod(ahead, 2 * math.pi), places, [*WAVE, WAVE[0]])
+        assert found == pytest.approx(wanted, abs=2e-3)  # the table's half degree
+        assert not column(model, pair.at(phase), "knee_r").any()
+
+
+def test_no_jump_where_the_cycle_closes(world):
+    pair = make_reference_pair(world.model, load_clip("forward_roll"), 0.05, 0.02)
+    around = np.array([pair.at(2 * math.pi * k / 3000) for k in range(-1500, 3000)])
+    assert np.abs(np.diff(around, axis=0)).max() < 0.03
+    assert around[0] == pytest.approx(around[3000], abs=1e-9)
+
+
+def test_without_a_window_both_are_the_clip(world):
+    model = world.model
+    shipped = load_clip("forward_roll")
+    pair = make_reference_pair(model, shipped, window=0.0, lead=0.0)
+    for k, pose in enumerate(shipped.poses(model)):
+        a, b = pair.at(2 * math.pi * k / shipped.samples)
+        assert a == pytest.approx(pose, abs=1e-9)
+        assert np.array_equal(a, b)
+
+
+def test_clipped_to_the_joint_ranges(world):
+    model = world.model
+    low, high = model.joint_range[model.joint_names.index("knee_l")]
+    poses = clip(knee=[-9.0, 9.0] * 12).poses(model)
+    assert set(column(model, poses, "knee_r")) == {low, high}
+
+
+def test_a_later_name_wins(world):
+    poses = clip(knee=WAVE, knee_r=[0.5] * N).poses(world.model)
+    assert column(world.model, poses, "knee_l") == pytest.approx(WAVE)
+    assert set(column(world.model, poses, "knee_r")) == {0.5}
+
+
+def test_unknown_joint(world):
+    with pytest.raises(InputError) as error:
+        clip(kne=WAVE).poses(world.model)
+    assert str(error.value) == (
+        "clip 'wave' names the unknown joint 'kne'; the character's: "
+        + ", ".join(world.model.joint_names)
+    )
+
+
+def test_unknown_name():
+    with pytest.raises(InputError) as error:
+        load_clip("cartwheel")
+    assert str(error.value) == (
+        f"cartwheel: no such clip; valid: {', '.join(names())}, or the path of a .yaml file"
+    )
+
+
+GOOD = {"name": "a", "roll_about": "left", "joints": {"knee": WAVE}}
+
+
+def saved(path, **changes):
+    path.write_text("".join(yaml.safe_dump({k: v}) for k, v in {**GOOD, **changes}.items()))
+    return path
+
+
+def test_a_clip_from_a_path(tmp_path):
+    assert load_clip(str(saved(tmp_path / "a.yaml"))).joints == {"knee": pytest.approx(WAVE)}
+    assert load_clip(str(saved(tmp_path / "plain"))).samples == N
+
+
+@pytest.mark.parametrize(
+    ("changes", "complaint"),
+    [
+        ({"roll_about": "up"}, "roll_about='up': must be 'left', 'right' or 'head'"),
+        ({"joints": {}}, "joints: must have at least 1 item"),
+        ({"joints": {"a": WAVE, "b": WAVE[:20]}},
+         "joints.b has 20 samples, joints.a has 24"),
+        ({"joints": {"knee": [*WAVE[:-1], float("nan")]}},
+         "joints.knee.23=nan: must be a finite number"),
+        ({"joints": {"knee": [*WAVE[:-1], "1"]}}, "joints.knee.23='1': must be a valid number"),
+        ({"pelvis": [[1.0, 0.0, 0.0, 0.0]]}, "pelvis has 1 samples, joints.knee has 24"),
+        ({"pelvis": [[0.0] * 4 for _ in range(N)]}, "pelvis: a quaternion must have length 1"),
+        ({"speed": 1.0}, "unknown key 'speed'; valid keys: name, roll_about, joints, pelvis, "
+         "character, source, licence, description, rate, loop_gap"),
+    ],
+)  # fmt: skip
+def test_a_bad_clip_is_one_line(tmp_path, changes, complaint):
+    path = saved(tmp_path / "bad.yaml", **changes)
+    with pytest.raises(InputError) as error:
+        load_clip(str(path))
+    assert str(error.value) == f"{path}: {complaint}"
+
+
+@pytest.mark.parametrize(
+    ("content", "complaint"),
+    [
+        (b"", ": must be keys with values: name, roll_about, joints, pelvis, character, source, "
+         "licence, description, rate, loop_gap"),
+        (b"name: a\njoints: [1, 2\n", ":3: is no YAML: did not find expected ',' or ']'"),
+        (b"name: !!python/object/apply:os.system ['true']\n",
+         ":1: is no YAML: could not determine a constructor for the tag "
+         "'tag:yaml.org,2002:python/object/apply:os.system'"),
+        (b"a: &x [1]\nb: *x\n", ":2: has an alias (*x); write it out"),
+        (b"- " * 100_000, ":1: nested more than 8 deep"),
+        (b"name: \xff\n", ":1: is no text (UTF-8)"),
+        (b"#" * 2_000_001, ": larger than 2 MB"),
+    ],
+)  # fmt: skip
+def test_hostile_yaml(tmp_path, content, complaint):
+    path = tmp_path / "bad.yaml"
+    path.write_bytes(content)
+    with pytest.raises(InputError) as error:
+        load_clip(str(path))
+    assert str(error.value) == f"{path}{complaint}"
+
+
+def test_no_file(tmp_path):
+    for name, complaint in (("no.yaml", "no such file"), ("", "is a folder")):
+        with pytest.raises(InputError) as error:
+            load_clip(f"{tmp_path}/{name}")
+        assert str(error.value) == f"{tmp_path / name}: {complaint}"
+
+
+def test_a_clip_without_a_pelvis_turns_evenly_and_can_be_written(world):
+    plain = Clip(name="wave", roll_about="right", joints={"knee": WAVE})
+    assert yaml.safe_load(text(plain)) == {
+        "name": "wave", "roll_about": "right", "joints": {"knee": WAVE}
+    }  # fmt: skip
+    turned = pelvis_turn(motion_of(world.model, plain).pelvis, "right")
+    assert turned == pytest.approx(2 * math.pi * np.arange(N) / N)

@@ -1,0 +1,392 @@
+"""The report: what its pages hold, what they say of missing runs, and what changed since."""
+
+import csv
+import io
+import json
+import shutil
+from html.parser import HTMLParser
+from xml.etree import ElementTree as Xml
+
+import pytest
+from logs import changed
+
+from rotctl.cli import main
+from rotctl.errors import InputError
+from rotctl.log import RunLog
+from rotctl.report.site import against, build
+from rotctl.report.site.build import report
+from rotctl.report.site.words import Names, kind, number, ranges
+from rotctl.results.manifest import Entry, read, write
+from rotctl.results.sweeps import sweeps
+
+ARGUMENTS = ["behaviour=forward_roll_1,decline", "seed=range(0,3)", "duration=0.5"]
+EXPERIMENT = """
+title: A test of <b>rolls</b>
+source: "[Brown2013] Table 1"
+matrix: [["behaviour=forward_roll_1,decline"]]
+seeds: range(0,3)
+deviations: [{text: Poses are ours., where: {behaviour: decline}}, {text: Another simulator.}]
+limitations: [Half a second is short.]
+claims:
+  - {id: roll, metric: success_rate, comparison: at_least, expected: 0.9, tolerance: 0.0,
+     source: paper, where: {behaviour: forward_roll_1}}
+  - {id: roll.speed, metric: speed_mean, expected: 99.0, tolerance: 0.1, source: paper,
+     where: {behaviour: forward_roll_1}}
+  - {id: decline, metric: success_rate, comparison: at_most, expected: 0.1, tolerance: 0.0,
+     source: paper, where: {behaviour: decline}}
+  - {id: gone, metric: success_rate, expected: 1.0, tolerance: 0.0, source: paper,
+     where: {behaviour: nobody}}
+"""
+EVIL = "<script>alert(1)</script>"
+ANSWER = "In part: 1 of 4 claims reproduced."
+
+
+class Page(HTMLParser):
+    """What a page is made of."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.tags, self.headings, self.text = [], [], ""
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        if tag in ("h1", "h2", "h3", "h4"):
+            self.headings.append(int(tag[1]))
+
+    def handle_data(self, data):
+        self.text += data
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.tags if name == tag]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with a sweep and its experiment, to be looked at only."""
+    folder = tmp_path_factory.mktemp("sweeps")
+    out = folder / "table"
+    assert main(["sweep", *ARGUMENTS, "--out", str(out), "--jobs", "1", "--quiet"]) == 0
+    (out / "experiment-test.yaml").write_text(EXPERIMENT)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def site(made, tmp_path_factory):
+    out = tmp_path_factory.mktemp("pages") / "site"
+    report(made, out)
+    return out
+
+
+@pytest.fixture
+def sweep(made, tmp_path, monkeypatch):
+    """A copy of the sweep, to be harmed; drawn quickly, without pictures."""
+    monkeypatch.setattr(build, "MOST_DRAWN", 0)
+    return shutil.copytree(made, tmp_path / "sweeps") / "table"
+
+
+def content(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+# ---------------------------------------------------------------- the pages
+
+
+def test_the_first_heading_asks_and_the_next_line_answers(site):
+    page = Page(site / "index.html")
+    assert page.headings[0] == 1
+    assert page.text.index("Does it reproduce the paper?") < page.text.index(ANSWER)
+    assert page.text.index(ANSWER) < page.text.index("forward_roll_1")
+
+
+def test_pages_are_sound(site):
+    for path in (site / "index.html", site / "sweeps" / "table.html"):
+        page = Page(path)
+        assert page.all("html") == [{"lang": "en"}]
+        assert page.headings.count(1) == 1
+        assert all(b <= a + 1 for a, b in zip(page.headings, page.headings[1:], strict=False))
+        assert all("alt" in image and "width" in image for image in page.all("img"))
+        assert all(region["tabindex"] == "0" for region in page.all("div"))
+        assert page.all("script") == []
+        assert not [tag for tag, found in page.tags if "style" in found or "onclick" in found]
+        (policy,) = [m["content"] for m in page.all("meta") if "http-equiv" in m]
+        assert policy.startswith("default-src 'none'; style-src 'sha256-")
+        assert policy.endswith("img-src 'self' file:; base-uri 'none'; form-action 'none'")
+
+
+def test_links_and_pictures_lead_somewhere(site):
+    for path in (site / "index.html", *site.glob("sweeps/*.html")):
+        page = Page(path)
+        ids = {attributes["id"] for _, attributes in page.tags if "id" in attributes}
+        addresses = [a["href"] for a in page.all("a")] + [i["src"] for i in page.all("img")]
+        addresses += [source["srcset"] for source in page.all("source")]
+        for address in addresses:
+            file, _, anchor = address.partition("#")
+            assert (path.parent / file).exists() if file else anchor in ids
+    assert len(list(site.glob("replays/*.html"))) == len(list(site.glob("pictures/*.png"))) == 4
+
+
+def test_rows_show_what_was_commanded_and_reached(site):
+    text = " ".join(Page(site / "index.html").text.split())
+    assert "100 % [44, 100] of 3 runs" in text
+    assert "of 1.3 commanded" in text
+    assert "at least 90 %" in text
+    assert "Half a second is short." in text
+    assert text.count("Poses are ours.") == 2  # at its row and in the list
+    assert "Only 3 starts a row, so that the intervals are wide." in text
+    assert "6 with a result, 0 without" in text
+    assert "1 claim, not tested: no such run in the sweep." in text
+
+
+def test_replays_share_one_script(site):
+    for path in site.glob("replays/*.html"):
+        html = path.read_text(encoding="utf-8")
+        assert '<script src="../replay.js"></script>' in html
+        assert "script-src 'self' file:;" in html
+        assert '<a class="back" href="../index.html">' in html
+        assert len(html) < 400_000
+
+
+def test_the_same_runs_give_the_same_bytes_and_old_pages_go(made, site, tmp_path):
+    out = tmp_path / "again"
+    (out / "replays").mkdir(parents=True)
+    (out / "replays" / "old.html").touch()
+    (out / "CNAME").write_text("not ours")
+    report(made, out)
+    again = content(out)
+    assert again.pop("CNAME") == b"not ours"
+    assert again == content(site)
+
+
+# ---------------------------------------------------------------- for programs
+
+
+def test_claims_csv_has_a_line_a_claim(site):
+    rows = list(csv.DictReader(io.StringIO((site / "claims.csv").read_text())))
+    assert [(row["id"], row["verdict"]) for row in rows] == [
+        ("roll", "reproduced"),
+        ("roll.speed", "not tested"),  # half a second is over before it settled
+        ("decline", "not reproduced"),
+        ("gone", "not tested"),
+    ]
+    assert (rows[0]["sweep"], rows[0]["experiment"]) == ("table", "test")
+    assert (rows[0]["value"], rows[0]["low"], rows[0]["runs"]) == ("1", "0.438503", "3")
+    assert json.loads(rows[0]["where"]) == {"behaviour": "forward_roll_1"}
+
+
+def test_junit_has_a_case_a_claim(site):
+    (suite,) = Xml.parse(site / "junit.xml").getroot()
+    assert suite.attrib == {"name": "table: test", "tests": "4", "failures": "1", "skipped": "2"}
+    roll, _, decline, gone = suite
+    assert (roll.get("name"), len(roll)) == ("roll", 0)
+    assert decline[0].tag == "failure"
+    assert decline[0].get("message") == (
+        "not reproduced: Success rate at most 10 % expected, 100 [44, 100] % measured over 3 runs"
+    )
+    assert gone[0].tag == "skipped"
+
+
+def test_the_summary_is_markdown_without_html(site):
+    text = (site / "summary.md").read_text()
+    assert text.startswith(f"# Does it reproduce the paper?\n\n**{ANSWER}**\n")
+    assert "## A test of &lt;b>rolls&lt;/b>" in text
+    assert "| roll | Success rate | at least 90 % | 100 \\[44, 100\\] % | 3 | reproduced |" in text
+
+
+# ---------------------------------------------------------------- strangers, gaps, failures
+
+
+def test_a_strangers_names_are_text_everywhere(sweep, tmp_path):
+    evil = EXPERIMENT.replace("nobody", EVIL).replace("title: A", f"title: {EVIL}")
+    (sweep / "experiment-test.yaml").write_text(evil.replace("id: gone", f'id: "{EVIL}"'))
+    log = RunLog.open(sorted(sweep.glob("*/run.h5"))[0])
+    config = log.config_yaml.replace("name: decline", f"name: '{EVIL}'")
+    config = config.replace("name: forward_roll_1", f"name: '{EVIL}'")
+    outcome = {**log.outcome, "behaviour": EVIL, "success": False, "failure_reason": EVIL}
+    hostile = changed(log, tmp_path, outcome=outcome, config=config, run_id=f'x"{EVIL}')
+    (sweep / "evil").mkdir()
+    shutil.move(hostile.path, sweep / "evil" / "run.h5")
+    build.MOST_DRAWN = 9  # monkeypatch puts it back
+    report(sweep.parent, tmp_path / "site")
+    files = content(tmp_path / "site")
+    assert "replays/script-alert-1-script-median.html" in files
+    for name, data in files.items():
+        assert b"<script>alert" not in data or name.endswith(".csv")
+    index = Page(tmp_path / "site" / "index.html")
+    assert EVIL in index.text
+    assert index.all("script") == []
+    Xml.parse(tmp_path / "site" / "junit.xml")
+
+
+def test_missing_failed_and_damaged_runs_are_told(sweep, tmp_path):
+    logs = sorted(sweep.glob("*/run.h5"))
+    logs[0].write_bytes(logs[0].read_bytes()[:1000])
+    entries = read(sweep)
+    for log, reason in zip(logs[1:3], ("its worker died", ""), strict=True):
+        name = log.parent.name
+        entries[name] = Entry(name, entries[name].values, reason)
+        log.unlink()
+    write(sweep, entries.values())
+    report(sweep, tmp_path / "site")
+    text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
+    assert f"{logs[0].parent.name}: damaged: truncated or damaged HDF5 file" in text
+    assert f"{logs[1].parent.name}: failed to run: its worker died" in text
+    assert "1 run of the sweep is not there; the same command does what is left" in text
+    assert "3 with a result, 3 without" in text
+    assert "without a result" in text
+
+
+def test_a_log_that_cannot_be_drawn_is_told(sweep, tmp_path):
+    for log in sweep.glob("*/run.h5"):
+        small = changed(RunLog.open(log), tmp_path, model_xml="<mujoco/>")
+        shutil.move(small.path, log)
+    build.MOST_DRAWN = 9  # monkeypatch puts it back
+    report(sweep, tmp_path / "site")
+    assert "no replay: " in Page(tmp_path / "site" / "index.html").text
+    assert str(sweep) not in (tmp_path / "site" / "index.html").read_text()
+
+
+def test_a_machine_without_opengl_makes_a_report_without_filmstrips(sweep, tmp_path, monkeypatch):
+    def no_backend():
+        raise InputError("cannot render: no working OpenGL")
+
+    monkeypatch.setattr("rotctl.report.gl.backend", no_backend)
+    build.MOST_DRAWN = 1  # monkeypatch puts it back
+    report(sweep, tmp_path / "site")
+    text = Page(tmp_path / "site" / "index.html").text
+    assert "no filmstrip: cannot render: no working OpenGL" in text
+    assert list(tmp_path.glob("site/replays/*.html"))
+
+
+def test_a_wrong_experiment_or_manifest_is_told_and_the_rest_is_there(sweep, tmp_path):
+    (sweep / "experiment-test.yaml").write_text("title: [")
+    broken = sweep.parent / "broken"
+    broken.mkdir()
+    (broken / "sweep.jsonl").write_text("nonsense\n")
+    shutil.copytree(sorted(sweep.glob("*/"))[0], sweep.parent / "loose")
+    claims = report(sweep.parent, tmp_path / "site")
+    assert claims == []
+    text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
+    assert "No claims to judge." in text
+    assert f"left out: {broken}/sweep.jsonl: line 1 is not a row of a sweep" in text
+    assert "loose/run.h5: is part of no sweep, left out" in text
+    assert "its claims are not judged: " in text
+    assert "no claim" in text  # at each row
+    assert "forward_roll_1" in text
+
+
+def test_a_single_sweep_and_bare_runs_will_do(sweep, tmp_path):
+    (found,), notes = sweeps(sweep)
+    assert (found.name, notes) == ("table", [])
+    (sweep / "sweep.jsonl").unlink()
+    (found,), notes = sweeps(sweep)
+    assert len(found.runs) == 6
+    assert notes == []
+
+
+# ---------------------------------------------------------------- the command
+
+
+def test_no_runs_is_one_line(tmp_path, capsys):
+    for folder, message in (
+        (tmp_path / "none", f"{tmp_path / 'none'}: no such folder"),
+        (tmp_path, f"{tmp_path}: no runs in it; rotctl sweep --out {tmp_path} makes some"),
+    ):
+        assert main(["report", str(folder), "--out", str(tmp_path / "site")]) == 2
+        assert capsys.readouterr() == ("", f"rotctl: {message}\n")
+    assert not (tmp_path / "site").exists()
+
+
+def test_against_tells_what_changed_and_fails_if_worse(sweep, tmp_path, capsys):
+    site = str(tmp_path / "site")
+    command = ["report", str(sweep.parent), "--out", site]
+    assert main(command) == 0
+    assert capsys.readouterr().out == f"{site}/index.html\n"
+    assert main([*command, "--against", site]) == 0
+    assert capsys.readouterr().out.endswith("no claim changed its verdict\n")
+    better = EXPERIMENT.replace("at_most, expected: 0.1", "at_most, expected: 1.0")
+    worse = better.replace("at_least, expected: 0.9", "at_most, expected: 0.0")
+    (sweep / "experiment-test.yaml").write_text(worse.replace("id: gone", "id: new"))
+    assert main([*command, "--against", site]) == 1
+    assert capsys.readouterr().out.splitlines()[1:] == [
+        "- worse: table/test/roll: reproduced -> not reproduced",
+        "- better: table/test/decline: not reproduced -> reproduced",
+        "- new: table/test/new: absent -> not tested",
+    ]
+
+
+def test_a_tested_claim_that_has_gone_is_worse():
+    old = {("s", "e", "tested"): "partly", ("s", "e", "untested"): "not tested"}
+    found = against.changes(old, [])
+    assert (found.text, found.worse) == ("- worse: s/e/tested: partly -> absent", True)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (None, "--against {old}: no report, there is no {old}/claims.csv"),
+        ("id,verdict\nx,reproduced\n", "{old}/claims.csv: line 2 is no claim with its verdict"),
+        (
+            "sweep,experiment,id,verdict\ns,e,x,good\n",
+            "{old}/claims.csv: line 2 is no claim with its verdict",
+        ),
+    ],
+)
+def test_what_is_no_report_is_one_line(made, tmp_path, capsys, text, message):
+    old = tmp_path / "old"
+    old.mkdir()
+    if text:
+        (old / "claims.csv").write_text(text)
+    command = ["report", str(made), "--out", str(tmp_path / "site"), "--against", str(old)]
+    assert main(command) == 2
+    assert capsys.readouterr() == ("", f"rotctl: {message.format(old=old)}\n")
+    assert not (tmp_path / "site").exists()
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(sweep, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    assert main(["report", str(sweep), "--out", str(tmp_path / "file")]) == 2
+    assert capsys.readouterr().err.startswith(f"rotctl: cannot write {tmp_path / 'file'}")
+
+
+# ---------------------------------------------------------------- words
+
+
+@pytest.mark.parametrize(
+    ("reason", "expected"),
+    [
+        ("stalled for 3.20 s from t = 1.00 s", "stalled"),
+        ("heading off by 40 deg at the end", "heading off"),
+        ("heading off by -40 deg at the end", "heading off"),
+        ("drifted 3.10 m sideways", "drifted"),
+        ("physics broke down at t = 0.50 s: MuJoCo warns", "physics broke down"),
+        ("", "no reason given"),
+    ],
+)
+def test_reasons_without_their_numbers(reason, expected):
+    assert kind(reason) == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        (0.7061, "0.706"),
+        (-0.0001, "0"),
+        (-3.756, "\u22123.76"),
+        (12345.6, "12346"),
+        (None, "\u2013"),
+    ],
+)
+def test_numbers_have_three_digits(value, expected):
+    assert number(value) == expected
+
+
+def test_names_of_files_are_plain_and_given_once():
+    names = Names()
+    assert [names.give(text) for text in ("A b/../c", "a b c", "<>", "滚")] == [
+        "a-b-c",
+        "a-b-c-2",
+        "x",
+        "x-2",
+    ]
+    assert ranges([5, 0, 1, 2, 7]) == "0-2, 5, 7"
