@@ -1,7 +1,7 @@
-"""Builds rotctl/control/compiled.c into the wheel, where there is a C compiler.
+"""Builds the C sources of rotctl into the wheel, where there is a C compiler.
 
-The library has no Python in it, so one build serves every Python 3 of a platform. Without a
-compiler the wheel is pure Python, and rotctl uses its numpy reference, a few times slower.
+The libraries have no Python in them, so one build serves every Python 3 of a platform. Without a
+compiler the wheel is pure Python, and rotctl uses its numpy references, a few times slower.
 """
 
 import importlib.util
@@ -14,8 +14,8 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SOURCE = Path("rotctl/control/compiled.c")
-LIBRARY = Path("rotctl/control/_compiled.so")
+SOURCES = (Path("rotctl/control/compiled.c"), Path("rotctl/simulation/pgs.c"))
+SLOWER = "rotctl will use its numpy reference instead, which is a few times slower"
 # Sums may be reordered, which lets them be vectorised; numbers that are not finite stay so.
 FLAGS = [
     *("-O3", "-std=c11", "-fPIC", "-shared", "-Wall", "-Wextra"),
@@ -23,42 +23,42 @@ FLAGS = [
 ]
 
 
-class CompileControlStep(BuildHookInterface):
+class CompileSources(BuildHookInterface):
     """The build hook of pyproject.toml."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Compile, before hatchling collects the files."""
-        root = Path(self.root)
-        (root / LIBRARY).unlink(missing_ok=True)
         compiler = next(
             filter(shutil.which, (os.environ.get("CC", ""), "cc", "gcc", "clang")), None
         )
         if compiler is None:
             self.app.display_warning(
-                "no C compiler found: rotctl will use its numpy controller, about three times "
-                "slower (Debian: apt-get install gcc libc6-dev, then install rotctl again)"
+                f"no C compiler found: {SLOWER} (Debian: apt-get install gcc libc6-dev, then "
+                "install rotctl again)"
             )
+        built = [library for source in SOURCES if (library := self._compiled(compiler, source))]
+        if not built:
             return
-        command = [
-            compiler,
-            *FLAGS,
-            f"-I{_mujoco_headers()}",
-            str(SOURCE),
-            "-o",
-            str(LIBRARY),
-            "-lm",
-        ]
-        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-        if done.returncode:
-            self.app.display_warning(
-                f"{compiler} could not build {SOURCE}: rotctl will use its numpy controller, "
-                f"about three times slower\n{done.stderr}"
-            )
-            return
-        build_data["artifacts"].append(str(LIBRARY))
+        build_data["artifacts"].extend(built)
         build_data["pure_python"] = False
         platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
         build_data["tag"] = f"py3-none-{platform}"
+
+    def _compiled(self, compiler: str | None, source: Path) -> str:
+        """The library `_name.so` beside `name.c`; empty if it cannot be built."""
+        library = source.with_name(f"_{source.stem}.so")
+        (Path(self.root) / library).unlink(missing_ok=True)
+        if compiler is None:
+            return ""
+        headers = f"-I{_mujoco_headers()}"
+        command = [compiler, *FLAGS, headers, str(source), "-o", str(library), "-lm"]
+        done = subprocess.run(command, cwd=self.root, capture_output=True, text=True, check=False)
+        if done.returncode:
+            self.app.display_warning(
+                f"{compiler} could not build {source}: {SLOWER}\n{done.stderr}"
+            )
+            return ""
+        return str(library)
 
 
 def _mujoco_headers() -> Path:

@@ -25,7 +25,7 @@ from rotctl.control import ControllerSettings
 from rotctl.errors import InputError
 from rotctl.listing import choices, conf_dir
 from rotctl.mechanics.character import Character
-from rotctl.mechanics.model import Physics
+from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.settings import STRICT, Positive
@@ -81,7 +81,7 @@ def composed(overrides: list[str]) -> dict[str, Any]:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
             data: Any = OmegaConf.to_container(compose("config", overrides), resolve=True)
     except (HydraException, OmegaConfBaseException, ValueError) as error:
-        raise InputError(_explain(error, keys)) from None
+        raise InputError(_explain(error, keys, overrides)) from None
     return data
 
 
@@ -167,20 +167,21 @@ def _checked_key(override: str) -> str:
     return key
 
 
-def _explain(error: Exception, keys: list[str]) -> str:
+def _explain(error: Exception, keys: list[str], overrides: list[str]) -> str:
     """Hydra's messages in one line, with the valid keys where a key is unknown."""
     text = str(error)
     named = re.search(r"Could not override '([^']+)'", text)
+    chosen = tuple(o for key, o in zip(keys, overrides, strict=True) if choices(key))
+    valid = _plain(chosen if len(chosen) < len(overrides) else ())  # () is the default
     for key in [named.group(1)] if named else keys:
-        complaint = _unknown_key(key)
+        complaint = _unknown_key(key, valid)
         if complaint:
             return complaint
     return " ".join(text.split())
 
 
-def _unknown_key(key: str) -> str:
-    """What is wrong with a key, and the valid ones; empty if it is in the default config."""
-    data: Any = _defaults()
+def _unknown_key(key: str, data: Any) -> str:
+    """What is wrong with a key, and the valid ones; empty if it is in `data`."""
     parts = key.split(".")
     for depth, part in enumerate(parts):
         inner = _member(data, part)
@@ -193,8 +194,8 @@ def _unknown_key(key: str) -> str:
 
 
 @cache
-def _defaults() -> dict[str, Any]:
-    return to_dict(load([]))
+def _plain(overrides: tuple[str, ...]) -> dict[str, Any]:
+    return to_dict(load(list(overrides)))
 
 
 _NOTHING = object()
@@ -228,7 +229,7 @@ def _complaint(data: Any, errors: list[Any]) -> str:
             found = inner
     where = ".".join(path)
     if kind == "unexpected_keyword_argument":
-        return _unknown_key(where) or f"unknown key {where!r}"
+        return _unknown_key(where, _plain(())) or f"unknown key {where!r}"
     if kind == "missing" and isinstance(found, list):
         # A list that is too short: pydantic counts the values that are not there.
         wanted = 1 + max(e["loc"][-1] for e in errors if e["loc"][:-1] == loc[:-1])
@@ -236,6 +237,12 @@ def _complaint(data: Any, errors: list[Any]) -> str:
     if kind == "missing":
         return f"{'.'.join(map(str, loc))}: missing, it cannot be left out"
     limits = first.get("ctx", {})
+    if kind in ("union_tag_invalid", "union_tag_not_found"):
+        # A group whose settings differ in kind, and a key that says which.
+        key = limits["discriminator"].strip("'")
+        if kind == "union_tag_not_found":
+            return f"{where}.{key}: missing, it cannot be left out"
+        return f"{where}.{key}={limits['tag']}: no such {key}; valid: {limits['expected_tags']}"
     if kind == "too_long":
         message = f"too many values, at most {limits['max_length']}"
     elif kind == "too_short":

@@ -83,7 +83,8 @@ def run(
     with _writable(folder):
         made = _simulated(scenario, progress)
         publish(made, folder)
-    notice = scenario.controller.notice
+    notices = (scenario.controller.notice, scenario.stepper.notice)
+    notice = "; ".join(filter(None, notices))
     return Result(folder, made.summary, already_there=False, replaced=replaced, notice=notice)
 
 
@@ -140,7 +141,11 @@ def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
         model_xml=scenario.model.mjcf,
         attributes={
             **found,
-            "versions": {**found["versions"], "control_step": scenario.controller.backend},
+            "versions": {
+                **found["versions"],
+                "control_step": scenario.controller.backend,
+                "physics_step": scenario.stepper.backend,
+            },
             "config": to_yaml(config),
             "run_id": scenario.run_id,
             "seed": config.seed,

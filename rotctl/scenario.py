@@ -13,7 +13,9 @@ from rotctl.control import Controller
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
 from rotctl.mechanics.model import Model
+from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.simulation import start as starts
+from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
 
@@ -54,7 +56,7 @@ def build(config: Config) -> Scenario:
             1.0 / control.rate,
         ),
         controller=Controller(model, control),
-        stepper=MujocoStepper(model, config.physics.substeps),
+        stepper=_stepper(config.physics, model),
         start=starts.draw(
             config.start,
             model,
@@ -63,6 +65,12 @@ def build(config: Config) -> Scenario:
         ),
         run_id=run_id(config, model),
     )
+
+
+def _stepper(physics: Physics, model: Model) -> Stepper:
+    if isinstance(physics, LockstepPhysics):
+        return LockstepStepper(model, physics)
+    return MujocoStepper(model, physics.substeps)
 
 
 # Nobody changes a model, so runs that differ in their seed or gains share one.

@@ -32,6 +32,7 @@ typedef struct {
   double linear_stiffness[3], linear_damping[3], angular_stiffness[3], angular_damping[3];
   double pose_stiffness, pose_damping;
   double threshold_force, threshold_torque, threshold_separation;
+  double touch, look_ahead;
   double mass, gravity[3];
   int supervisor, trunk_count;
   int trunk[16];
@@ -45,6 +46,7 @@ typedef struct {
   double com[3], com_velocity[3], linear[3], angular[3], inertia[9], angular_velocity[3];
   double rotation[9], offset[3], trunk_axes[9];
   double position[CONTACTS][3], frame[CONTACTS][9], friction[CONTACTS][2];
+  double gap[CONTACTS];
   int body[CONTACTS];
   long long row[CONTACTS];
   int count;
@@ -206,6 +208,9 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     const mjContact* k = d->contact + i;
     int first = m->geom_bodyid[k->geom[0]], second = m->geom_bodyid[k->geom[1]];
     if (own(m, first) == own(m, second) || k->efc_address < 0) continue;
+    if (k->dist > s->c.touch &&
+        !(s->c.look_ahead && k->dist + s->c.look_ahead * d->efc_vel[k->efc_address] < 0))
+      continue;
     if (r->count == CONTACTS) return FAILED;
     int j = r->count++;
     double sign = own(m, first) ? -1 : 1;
@@ -214,6 +219,7 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     memcpy(r->position[j], k->pos, sizeof r->position[j]);
     for (int a = 0; a < 9; a++) r->frame[j][a] = sign * k->frame[a];
     r->friction[j][0] = k->friction[0], r->friction[j][1] = k->friction[1];
+    r->gap[j] = k->dist;
   }
   return r->count;
 }
@@ -451,6 +457,7 @@ static void collect(Self* s, mjData* d, const Reading* r, const int* contact, in
     cross(lever, r->offset, J);
     s->drift[i] = 0;
     for (int v = 0; v < nv; v++) s->drift[i] += J[v] * (d->qvel[v] / c->period - fall[v]);
+    if (i % 3 == 0) s->drift[i] += fmax(r->gap[contact[i / 3]], 0) / (c->period * c->period);
     s->pull[i] = 0;
     for (int a = 0; a < 6; a++) {
       s->maps[a][i] = a < 3 ? J[a] : about[a - 3] - lever[a - 3];

@@ -90,7 +90,7 @@ def objectives(terms: Terms, model: Model, state: State, M: Array) -> list[Objec
         Objective(blend, terms.pose_b, np.full(nu, weights.pose)),  # E_B, eq. 7
         Objective(  # W_v term of eq. 2
             velocity,
-            -terms.jacobian @ state.velocity,
+            terms.approach - terms.jacobian @ state.velocity,
             np.full(3 * m, weights.contact_velocity),
         ),
         Objective(force, np.zeros(3 * m), np.full(3 * m, weights.contact_force)),

@@ -31,8 +31,10 @@ class Terms:
         solved: (3m, nv) J M^-1.
         maps: (6, 3m) contact forces to momentum rates.
         weight: (6,) momentum rates of gravity [N, N m].
-        drift: (3m,) contact velocity at t + h over h if all torques and forces were
-            zero: J qdot / h - J M^-1 C [m/s^2].
+        approach: (3m,) wanted contact velocity at t + h [m/s]: zero, but -gap / h along the
+            normal of a contact that is still open.
+        drift: (3m,) contact velocity at t + h over h, less `approach`, if all torques and
+            forces were zero: J qdot / h - J M^-1 C - approach / h [m/s^2].
     """
 
     weights: Weights
@@ -49,6 +51,7 @@ class Terms:
     solved: Array
     maps: Array
     weight: Array
+    approach: Array
     drift: Array
 
     @property
@@ -95,6 +98,7 @@ class Terms:
             jacobian=self.jacobian[rows],
             solved=self.solved[rows],
             maps=self.maps[:, rows],
+            approach=self.approach[rows],
             drift=self.drift[rows],
         )
         both = np.ix_(rows, rows)
@@ -126,6 +130,8 @@ def collect(
     jacobian = contact_jacobian(model.mj, state.data, state.contacts)[np.repeat(keep, 3)]
     solved = state.solve_mass(model.mj, np.concatenate((jacobian, state.bias[None])))
     h = 1.0 / settings.rate
+    approach = np.zeros(len(jacobian))
+    approach[::3] = -np.maximum(state.contacts.gap[keep], 0.0) / h
     weights = settings.weights
     across = weights.angular_momentum * weights.out_of_plane
     return Terms(
@@ -145,5 +151,6 @@ def collect(
         solved=solved[:-1],
         maps=contact_momentum_maps(state.momentum, jacobian),
         weight=np.concatenate((model.mass * model.gravity, np.zeros(3))),
-        drift=jacobian @ (state.velocity / h - solved[-1]),
+        approach=approach,
+        drift=jacobian @ (state.velocity / h - solved[-1]) - approach / h,
     )

@@ -24,6 +24,7 @@ class Contacts:
         frame: (m, 3, 3) rows are normal (out of the ground) and two tangents, world axes.
         row: (m,) first row of each contact in MuJoCo's constraint arrays.
         friction: (m, 2) the physics' friction coefficients along the two tangents [-].
+        gap: (m,) distance to the ground [m]; negative where they overlap.
     """
 
     body: NDArray[np.int32]
@@ -31,6 +32,7 @@ class Contacts:
     frame: Array
     row: NDArray[np.int64]
     friction: Array
+    gap: Array
 
     @property
     def count(self) -> int:
@@ -38,15 +40,24 @@ class Contacts:
         return len(self.body)
 
 
-def read_contacts(mj: mujoco.MjModel, data: mujoco.MjData) -> Contacts:
+def read_contacts(
+    mj: mujoco.MjModel, data: mujoco.MjData, touch: float = 0.0, look_ahead: float = 0.0
+) -> Contacts:
     """Contacts of the current position; call after `mj_step1` or `mj_forward`.
 
-    Contacts of the character with itself are left out: control does not plan with them.
+    Contacts of the character with itself are left out: control does not plan with them. So are
+    open ones, which only lockstep physics has, but for those with a gap below `touch` [m] and
+    those that close within `look_ahead` [s] at their present speed.
     """
     contact = data.contact
     bodies = mj.geom_bodyid[contact.geom]  # (ncon, 2)
     own = is_character(mj)[bodies]
     chosen = np.flatnonzero((own.sum(axis=1) == 1) & (contact.efc_address >= 0))
+    gap, row = contact.dist[chosen], contact.efc_address[chosen]
+    there = gap <= touch
+    if look_ahead and not there.all():
+        there |= gap + look_ahead * data.efc_vel[row] < 0.0
+    chosen = chosen[there]
     own, bodies = own[chosen], bodies[chosen]
     # Where the character is the contact's first geom, MuJoCo's frame points into the
     # ground while its rows still measure separation: only the frame needs turning.
@@ -55,8 +66,9 @@ def read_contacts(mj: mujoco.MjModel, data: mujoco.MjData) -> Contacts:
         body=np.where(own[:, 0], bodies[:, 0], bodies[:, 1]),
         position=contact.pos[chosen],
         frame=contact.frame[chosen].reshape(-1, 3, 3) * sign[:, None, None],
-        row=contact.efc_address[chosen].astype(np.int64),
+        row=row[there].astype(np.int64),
         friction=contact.friction[chosen, :2],
+        gap=gap[there],
     )
 
 

@@ -5,67 +5,20 @@ things on the ground, if there are any. MuJoCo's arrays are of the whole world; 
 is block diagonal in the two, so that control can work on full vectors and leave the rest at 0.
 """
 
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, Strict
-from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character, add_character
+from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
-from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Vector
 
 ROOT_DOFS = 6
 TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it
-PLAIN_OPTIONS = (
-    "iterations",
-    "tolerance",
-    "ls_iterations",
-    "ls_tolerance",
-    "noslip_iterations",
-    "noslip_tolerance",
-    "ccd_iterations",
-    "ccd_tolerance",
-    "impratio",
-    "density",
-    "viscosity",
-)
-Count = Annotated[int, Strict(), Field(ge=0, le=10_000)]
-
-
-@validated(frozen=True, config=STRICT)
-class Physics:
-    """Every option of the physics; see `conf/physics/mujoco.yaml` for units and reasons."""
-
-    name: str
-    stepper: Literal["mujoco"]
-    substeps: Annotated[int, Strict(), Field(ge=1, le=1000)]
-    gravity: Vector
-    integrator: Literal["euler", "implicit", "implicitfast"]
-    cone: Literal["elliptic", "pyramidal"]
-    solver: Literal["newton", "cg", "pgs"]
-    jacobian: Literal["dense"]
-    iterations: Annotated[int, Strict(), Field(ge=1, le=10_000)]
-    tolerance: NonNegative
-    ls_iterations: Annotated[int, Strict(), Field(ge=1, le=10_000)]
-    ls_tolerance: NonNegative
-    noslip_iterations: Count
-    noslip_tolerance: NonNegative
-    ccd_iterations: Count
-    ccd_tolerance: NonNegative
-    impratio: Positive
-    density: NonNegative
-    viscosity: NonNegative
-    disable: tuple[Literal["autoreset", "warmstart", "eulerdamp", "filterparent"], ...]
-    contact_solref: tuple[Positive, Positive]
-    contact_solimp: tuple[Fraction, Fraction, Positive, Fraction, Positive]
-    contact_capacity: Annotated[int, Strict(), Field(ge=1, le=1024)]
-    description: str = ""
 
 
 @dataclass(frozen=True)
@@ -80,13 +33,15 @@ class Model:
         angles: their entries in `qpos`.
         joint_range: (nu, 2) [rad].
         torque_limit: (nu,) [N m].
-        armature: (nu,) [kg m2].
+        armature: (nu,) of the motors, and what the physics adds for damping [kg m2].
         diagonal: (nv,) addresses of the mass matrix's diagonal in `data.M`.
         mass: of the character [kg].
         gravity: (3,) [m/s2].
         trunk: body ids whose axes, averaged, are compared with the rolling axis.
         trunk_weights: (len(trunk), 1) their shares of the trunk's mass.
         excluded: (nbody,) True where a body's contacts are held out of control.
+        touch: control sees the contacts whose gap is below this [m],
+        look_ahead: and those that would close within this time [s]; 0 where it does not look.
         ground: what it stands on.
     """
 
@@ -104,6 +59,8 @@ class Model:
     trunk: NDArray[np.int64]
     trunk_weights: Array
     excluded: NDArray[np.bool_]
+    touch: float
+    look_ahead: float
     ground: Ground
 
 
@@ -126,13 +83,14 @@ def build(
     spec = mujoco.MjSpec()
     spec.modelname = character.name
     spec.compiler.degree = False
-    _set_options(spec, physics, control_rate)
+    physics.set_options(spec, control_rate)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
     ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]))
     add_tiles(spec)
     try:
-        add_character(spec, character)
+        added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
+        add_character(spec, replace(character, joint_armature=character.joint_armature + added))
         ground.add(spec)
         mj = spec.compile()
     except ValueError as error:
@@ -162,29 +120,10 @@ def build(
         trunk=trunk,
         trunk_weights=(mj.body_mass[trunk] / mj.body_mass[trunk].sum())[:, None],
         excluded=excluded,
+        touch=physics.touch,
+        look_ahead=1.0 / control_rate if physics.closing else 0.0,
         ground=ground,
     )
-
-
-def _set_options(spec: mujoco.MjSpec, physics: Physics, control_rate: float) -> None:
-    option = spec.option
-    option.timestep = 1.0 / (control_rate * physics.substeps)
-    option.gravity = physics.gravity
-    option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{physics.integrator.upper()}")
-    option.cone = getattr(mujoco.mjtCone, f"mjCONE_{physics.cone.upper()}")
-    option.solver = getattr(mujoco.mjtSolver, f"mjSOL_{physics.solver.upper()}")
-    option.jacobian = getattr(mujoco.mjtJacobian, f"mjJAC_{physics.jacobian.upper()}")
-    for name in PLAIN_OPTIONS:
-        setattr(option, name, getattr(physics, name))
-    option.wind = [0.0, 0.0, 0.0]
-    option.magnetic = [0.0, 0.0, 0.0]
-    option.enableflags = 0
-    option.disableflags = sum(
-        int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{name.upper()}")) for name in physics.disable
-    )
-    for default in (spec.default.geom, spec.default.pair):
-        default.solref = physics.contact_solref
-        default.solimp = physics.contact_solimp
 
 
 def _check(mj: mujoco.MjModel, character: Character) -> None:

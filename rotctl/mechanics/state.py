@@ -62,7 +62,7 @@ def read(model: Model, data: mujoco.MjData) -> State:
         position=data.qpos.copy(),
         velocity=data.qvel.copy(),
         momentum=read_momentum(model.mj, data),
-        contacts=read_contacts(model.mj, data),
+        contacts=read_contacts(model.mj, data, model.touch, model.look_ahead),
         trunk_axes=axes / np.sqrt((axes**2).sum(axis=0)),
         data=data,
     )

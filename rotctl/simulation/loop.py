@@ -119,6 +119,9 @@ def simulate(
         realised = stepper.advance(data, decision.torque, state.contacts)
         record(buffer, i, state, now, behaviour, decision, realised)
         progress()
+        remark = stepper.remark()
+        if remark:
+            buffer.add_event(state.time, remark)
         if stop(state, now):
             buffer = buffer.trimmed(i + 1)
             break

@@ -21,7 +21,15 @@ WARNINGS = {
 
 
 class Stepper(Protocol):
-    """A way to step the physics; the state lives in MuJoCo's data."""
+    """A way to step the physics; the state lives in MuJoCo's data.
+
+    Attributes:
+        backend: which code steps, for the log.
+        notice: what a user should know about that; mostly empty.
+    """
+
+    backend: str
+    notice: str
 
     def evaluate(self, data: mujoco.MjData) -> None:
         """Bring positions, contacts and bias up to date with the state in `data`."""
@@ -35,6 +43,10 @@ class Stepper(Protocol):
         """
         ...
 
+    def remark(self) -> str:
+        """What the log should tell of the last control period; mostly empty."""
+        ...
+
     def complaint(self, data: mujoco.MjData) -> str:
         """Why the state can no longer be trusted; empty while it can."""
         ...
@@ -42,6 +54,9 @@ class Stepper(Protocol):
 
 class MujocoStepper:
     """MuJoCo's soft contacts: `substeps` steps with the torque held."""
+
+    backend = "mujoco"
+    notice = ""
 
     def __init__(self, model: Model, substeps: int) -> None:
         """Step `model` `substeps` times per control period."""
@@ -64,14 +79,27 @@ class MujocoStepper:
         self._steps += 1
         return force
 
-    def complaint(self, data: mujoco.MjData) -> str:
-        """MuJoCo's warnings, a state that is not finite, or a clock that was reset."""
-        counts = data.warning.number
-        if counts.any():
-            kind = mujoco.mjtWarning(int(np.flatnonzero(counts)[0]))
-            return f"MuJoCo warns: {WARNINGS[kind]}"
-        if not np.isfinite(data.qpos.sum() + data.qvel.sum()):
-            return "the state is not finite"
-        if abs(data.time - self._steps * self._period) > 0.5 * self._period:
-            return "MuJoCo reset the simulation"
+    def remark(self) -> str:
+        """Nothing: MuJoCo's solver falls short in silence."""
         return ""
+
+    def complaint(self, data: mujoco.MjData) -> str:
+        """See `trouble`."""
+        return trouble(data, self._steps, self._period)
+
+
+def trouble(data: mujoco.MjData, periods: int, period: float) -> str:
+    """MuJoCo's warnings, a state that is not finite, or a clock that was reset.
+
+    Args:
+        periods: of `period` [s] that the clock should show.
+    """
+    counts = data.warning.number
+    if counts.any():
+        kind = mujoco.mjtWarning(int(np.flatnonzero(counts)[0]))
+        return f"MuJoCo warns: {WARNINGS[kind]}"
+    if not np.isfinite(data.qpos.sum() + data.qvel.sum()):
+        return "the state is not finite"
+    if abs(data.time - periods * period) > 0.5 * period:
+        return "MuJoCo reset the simulation"
+    return ""
