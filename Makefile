@@ -63,9 +63,10 @@ lint: setup ## style, layout, types, floors: changes nothing
 # Three starts a row take minutes on two cores: make reproduce QUICK=1
 REPRODUCE := sweeps/reproduce$(if $(QUICK),-quick)
 .PHONY: reproduce
-reproduce: setup ## run Table 1 and build its page, site/index.html (QUICK=1: three starts a row)
-	$(BIN)/rotctl sweep +experiment=table1 $(if $(QUICK),'seed=range(0,3)') \
-		--out $(REPRODUCE)/table1 || [ $$? -eq 1 ] # 1: some run failed to run; the page says so
+reproduce: setup ## run Table 1 and the contrasts, build the page site/index.html (QUICK=1: three starts a row)
+	for experiment in table1 contrasts; do \
+		$(BIN)/rotctl sweep +experiment=$$experiment $(if $(QUICK),'seed=range(0,3)') \
+			--out $(REPRODUCE)/$$experiment || [ $$? -eq 1 ] || exit; done # 1: a run failed; the page says so
 	$(BIN)/rotctl report $(REPRODUCE) --out site
 
 .PHONY: bench

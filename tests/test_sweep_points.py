@@ -32,7 +32,7 @@ def overrides(*grid):
                 ("start=tucked", "seed=2"),
             ],
         ),
-        (("start=glob(t*)",), [("start=tucked",)]),
+        (("start=glob(r*)",), [("start=rest",)]),
         (
             ("start.speed_x=[0,1],[1,2]",),
             [("start.speed_x=[0,1]",), ("start.speed_x=[1,2]",)],

@@ -107,6 +107,8 @@ def _lying(model: Model, contacts: int) -> mujoco.MjData:
     ground = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))
     if len(ground) < contacts:
         raise InputError(f"the character lies on {len(ground)} points, {contacts} are asked for")
+    for i in ground[:contacts]:
+        data.contact[int(i)].dist = 0.0  # control counts those that touch
     for i in ground[contacts:]:
         data.contact[int(i)].efc_address = -1
     return data
