@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -14,6 +14,7 @@ from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
+from rotctl.motion import load_clip
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
@@ -89,8 +90,14 @@ def model_of(config: Config) -> Model:
 
 
 def run_id(config: Config, model: Model) -> str:
-    """Hash of the resolved config, the log's schema version and the model."""
-    canonical = json.dumps(
-        {"config": to_dict(config), "schema": SCHEMA_VERSION, "model": model.mjcf}, sort_keys=True
-    )
+    """Hash of the resolved config, the log's schema version, the model and the clip followed.
+
+    Raises:
+        InputError: there is no such clip.
+    """
+    parts = {"config": to_dict(config), "schema": SCHEMA_VERSION, "model": model.mjcf}
+    reference = config.behaviour.reference
+    if reference:
+        parts["clip"] = asdict(load_clip(reference.clip))  # a name or path says not what is in it
+    canonical = json.dumps(parts, sort_keys=True)
     return hashlib.sha256(canonical.encode()).hexdigest()[:12]

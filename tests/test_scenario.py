@@ -7,6 +7,7 @@ import pytest
 
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.listing import conf_dir
 from rotctl.scenario import build
 
 
@@ -89,3 +90,15 @@ def test_unknown_names_are_answered_with_the_known_ones(override, start):
     with pytest.raises(InputError) as caught:
         build(load([override]))
     assert str(caught.value).startswith(start)
+
+
+def test_the_run_id_knows_what_is_in_the_clip(tmp_path):
+    """A path stays the same when its file changes; a resumed sweep must not take old for new."""
+    path = tmp_path / "clip.yaml"
+    overrides = ["behaviour=forward_roll_2", f"behaviour.reference.clip={path}"]
+    shipped = (conf_dir() / "motion" / "forward_roll.yaml").read_text()
+    path.write_text(shipped)
+    before = run_id(*overrides)
+    assert run_id(*overrides) == before
+    path.write_text(shipped.replace("chest_y: [0.45,", "chest_y: [0.46,"))
+    assert run_id(*overrides) != before
