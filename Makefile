@@ -64,9 +64,9 @@ lint: setup ## style, layout, types, floors: changes nothing
 REPRODUCE := sweeps/reproduce$(if $(QUICK),-quick)
 .PHONY: reproduce
 reproduce: setup ## run Table 1 and the contrasts, build the page site/index.html (QUICK=1: three starts a row)
-	for experiment in table1 contrasts; do \
-		$(BIN)/rotctl sweep +experiment=$$experiment $(if $(QUICK),'seed=range(0,3)') \
-			--out $(REPRODUCE)/$$experiment || [ $$? -eq 1 ] || exit; done # 1: a run failed; the page says so
+	for folder in 1-table1 2-contrasts; do \
+		$(BIN)/rotctl sweep +experiment=$${folder#*-} $(if $(QUICK),'seed=range(0,3)') \
+			--out $(REPRODUCE)/$$folder || [ $$? -eq 1 ] || exit; done # 1: a run failed; the page says so
 	$(BIN)/rotctl report $(REPRODUCE) --out site
 
 .PHONY: bench

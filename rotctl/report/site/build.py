@@ -26,7 +26,7 @@ from rotctl.report.site.words import QUANTITIES, Names
 from rotctl.results.groups import grouped
 from rotctl.results.sweeps import Sweep, sweeps
 
-MOST_DRAWN = 16  # rows with pictures and replays: about 2 s and 0.6 MB each
+MOST_DRAWN = 12  # rows with pictures and replays: about 2 s and 0.6 MB each
 MOST_LISTED = 200  # groups in the table of a page
 Files = dict[str, bytes]  # address -> content
 
