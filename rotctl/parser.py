@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from rotctl import __version__, commands
+from rotctl import __version__, clip_commands, commands
 from rotctl.wording import one_line
 
 EPILOG = """\
@@ -281,7 +281,7 @@ def _parser() -> argparse.ArgumentParser:
         "--symmetric", action="store_true", help="the mean of the roll and its mirror image"
     )
     importing.add_argument("--licence", default="", metavar="TEXT", help="the source's terms")
-    importing.set_defaults(command=commands.import_motion)
+    importing.set_defaults(command=clip_commands.import_motion)
 
     authoring = chosen.add_parser(
         "author-motion",
@@ -290,7 +290,7 @@ def _parser() -> argparse.ArgumentParser:
         "between them, its phase linear in how far the body has turned.",
     )
     authoring.add_argument("file", type=Path, metavar="KEYS.yaml")
-    authoring.set_defaults(command=commands.author_motion)
+    authoring.set_defaults(command=clip_commands.author_motion)
 
     for command in (importing, authoring):
         command.add_argument(
@@ -310,7 +310,7 @@ def _parser() -> argparse.ArgumentParser:
     preview.add_argument(
         "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
     )
-    preview.set_defaults(command=commands.preview_motion)
+    preview.set_defaults(command=clip_commands.preview_motion)
 
     for command in (importing, authoring, preview):
         command.add_argument(

@@ -1,18 +1,22 @@
 """Shared by the tests: a scenario built once, and control steps recorded from short rolls."""
 
 import copy
+import os
 from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
 import pytest
+from browser import Browser, executable
 
 from rotctl.config import load
 from rotctl.control import Decision, Desired
 from rotctl.control.pose import PoseTracker
 from rotctl.control.targets import momentum_rates
 from rotctl.control.terms import collect
+from rotctl.errors import InputError
 from rotctl.mechanics.state import read
+from rotctl.report import gl
 from rotctl.scenario import build
 from rotctl.simulation.loop import simulate
 
@@ -168,3 +172,32 @@ def supported(world, steps):
     found = [s for s in steps if (~world.model.excluded[world.state(s).contacts.body]).sum() >= 2]
     assert len(found) >= 50
     return found
+
+
+def pictures_are_wanted():
+    """CI must be able to draw and browse unless it says otherwise; others may lack it."""
+    return os.environ.get("CI") == "true" and os.environ.get("ROTCTL_CI_NO_PICTURES") != "1"
+
+
+@pytest.fixture
+def drawing():
+    """A machine that can draw."""
+    try:
+        gl.backend()
+    except InputError as error:
+        if pictures_are_wanted():
+            raise
+        pytest.skip(str(error))
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """A Chromium of this module's own."""
+    if executable() is None:
+        reason = "no Chromium here; on Debian: apt-get install chromium"
+        if pictures_are_wanted():
+            pytest.fail(reason)
+        pytest.skip(reason)
+    opened = Browser()
+    yield opened
+    opened.close()

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import Browser, executable
 from logs import changed
 from PIL import Image
 
@@ -19,18 +18,6 @@ from rotctl.run import LOG_NAME, run
 STORED = Path(__file__).parent / "pictures" / "replay.png"
 SMALL = (160, 120)  # pixels of the stored picture
 EVIL = "<script>window.hacked=1</script><img src=x onerror=window.hacked=1>"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if executable() is None:
-        reason = "no Chromium here; on Debian: apt-get install chromium"
-        if os.environ.get("CI") == "true" and os.environ.get("ROTCTL_CI_NO_PICTURES") != "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    opened = Browser()
-    yield opened
-    opened.close()
 
 
 @pytest.fixture(scope="module")

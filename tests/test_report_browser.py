@@ -1,27 +1,14 @@
 """The report in a real browser, offline: no complaint, in both colour schemes, wide and narrow."""
 
 import io
-import os
 
 import numpy as np
 import pytest
-from browser import PAGE_READY, Browser, executable
+from browser import PAGE_READY
 from PIL import Image
 
 from rotctl.cli import main
 from rotctl.report.site.build import report
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if executable() is None:
-        reason = "no Chromium here; on Debian: apt-get install chromium"
-        if os.environ.get("CI") == "true" and os.environ.get("ROTCTL_CI_NO_PICTURES") != "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    opened = Browser()
-    yield opened
-    opened.close()
 
 
 @pytest.fixture(scope="module")

@@ -18,6 +18,7 @@ from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
 
 ROOT_DOFS = 6
+SIDES = ("_l", "_r")  # how names of limbs end
 TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it
 
 
@@ -62,6 +63,11 @@ class Model:
     touch: float
     look_ahead: float
     ground: Ground
+
+    def motors(self, joint: str) -> list[int]:
+        """Motors of a joint's name; one without a side stands for both; none if it is unknown."""
+        named = (joint, *(joint + side for side in SIDES))
+        return [i for i, name in enumerate(self.joint_names) if name in named]
 
 
 def build(

@@ -6,6 +6,7 @@ upright (log roll: supine), while it travels to +x. So a forward roll is face do
 and on the upper back at pi; a backward roll lies on its back at pi/2.
 """
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -16,8 +17,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.mechanics.model import Model
-from rotctl.motion.pose_pair import SIDES
-from rotctl.motion.untrusted import read_yaml
+from rotctl.motion.untrusted import MAX_YAML_BYTES, parsed, text_of
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
@@ -91,13 +91,12 @@ class Clip:
 
 
 def joint_columns(model: Model, name: str, whose: str) -> list[int]:
-    """Which motors a joint's name stands for; a name without a side is both sides.
+    """`Model.motors` of a joint's name.
 
     Raises:
-        InputError: none; the message says whose name it was.
+        InputError: there are none; the message says whose name it was.
     """
-    names = (name, *(name + side for side in SIDES))
-    found = [i for i, joint in enumerate(model.joint_names) if joint in names]
+    found = model.motors(name)
     if not found:
         raise InputError(
             f"{whose} names the unknown joint {name!r}; "
@@ -118,9 +117,18 @@ def load_clip(name: str) -> Clip:
         InputError: one line that names the file, the bad value and what is valid.
     """
     if "/" in name or name.endswith(".yaml"):
-        return read_yaml(Path(name), Clip)
+        return _read(Path(name))
     if name not in names():
         raise InputError(
             f"{name}: no such clip; valid: {', '.join(names())}, or the path of a .yaml file"
         )
-    return read_yaml(conf_dir() / "motion" / f"{name}.yaml", Clip)
+    return _read(conf_dir() / "motion" / f"{name}.yaml")
+
+
+def _read(path: Path) -> Clip:
+    return _parsed(path, text_of(path, MAX_YAML_BYTES))
+
+
+@lru_cache(maxsize=8)  # all runs of a sweep ask for the same text, and parsing it takes a while
+def _parsed(path: Path, text: str) -> Clip:
+    return parsed(path, text, Clip)

@@ -3,8 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.mechanics.model import Model
-from rotctl.motion.pose_pair import SIDES
+from rotctl.mechanics.model import SIDES, Model
 from rotctl.motion.turning import Motion
 from rotctl.rotations import Array
 

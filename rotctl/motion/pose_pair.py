@@ -12,12 +12,11 @@ from math import cos, sin
 import numpy as np
 
 from rotctl.errors import InputError
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import SIDES, Model
 from rotctl.rotations import Array
 from rotctl.settings import Finite
 
 Angle = Finite | tuple[Finite, Finite, Finite]
-SIDES = ("_l", "_r")
 
 
 @dataclass(frozen=True)
@@ -60,11 +59,11 @@ def make_pose_pair(model: Model, a: Mapping[str, Angle], b: Mapping[str, Angle])
 
 def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
     columns = np.zeros((3, len(model.joint_names)))
-    index = {name: i for i, name in enumerate(model.joint_names)}
     for name, angle in pose.items():
-        found = [index[n] for n in (name, *(name + side for side in SIDES)) if n in index]
+        found = model.motors(name)
         if not found:
-            bases = sorted({n.removesuffix("_l").removesuffix("_r") for n in index})
+            left, right = SIDES
+            bases = sorted({n.removesuffix(left).removesuffix(right) for n in model.joint_names})
             raise InputError(
                 f"behaviour.poses.{key} names the unknown joint {name!r}; "
                 f"valid: {', '.join(bases)}, limb joints also with _l or _r"

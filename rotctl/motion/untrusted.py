@@ -50,7 +50,11 @@ def read_yaml(path: Path, shape: type[T]) -> T:
     Raises:
         InputError: one line that names the file, the bad value and what is valid.
     """
-    text = text_of(path, MAX_YAML_BYTES)
+    return parsed(path, text_of(path, MAX_YAML_BYTES), shape)
+
+
+def parsed(path: Path, text: str, shape: type[T]) -> T:
+    """The same of the text of such a file; `path` is for the messages."""
     try:
         _refuse_nesting(path, text)
         data = yaml.load(text, _LOADER)  # safe: plain data only

@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import SIDES, Model
 from rotctl.motion.clip import Clip
-from rotctl.motion.pose_pair import SIDES
 from rotctl.motion.turning import Motion
 
 DIGITS = 3  # a milliradian is finer than any controller follows

@@ -107,8 +107,7 @@ def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     """Angles by joint name to an array (nu,) in motor order."""
     pose = np.zeros(len(model.joint_names))
     for name, angle in angles.items():
-        named = (name, f"{name}_l", f"{name}_r")
-        found = [i for i, joint in enumerate(model.joint_names) if joint in named]
+        found = model.motors(name)
         if not found:
             raise InputError(
                 f"{key} names the unknown joint {name!r}; valid: {', '.join(model.joint_names)}"
