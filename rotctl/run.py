@@ -255,11 +255,11 @@ def _mujoco_warnings() -> Iterator[list[str]]:
 @contextmanager
 def _writable(folder: Path) -> Iterator[None]:
     """Make `folder` before the work starts; no empty one stays behind if that fails."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot write {folder}: {error.strerror}") from None
-    try:
+    try:  # from before it is made: an interrupt may come right after
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"cannot write {folder}: {error.strerror}") from None
         if not os.access(folder, os.W_OK):
             raise InputError(f"cannot write {folder}: no permission, or read-only")
         yield

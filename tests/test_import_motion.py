@@ -195,7 +195,7 @@ def test_import_from_the_shell(captured, tmp_path):
 
 
 def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
-    monkeypatch.setattr("rotctl.commands.CLIP_FRAMES", 2)
+    monkeypatch.setattr("rotctl.clip_commands.CLIP_FRAMES", 2)
     out = tmp_path / "clip.yaml"
     keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
     for command, file in (("import-motion", captured), ("author-motion", keys)):
