@@ -54,6 +54,7 @@ def build(config: Config) -> Scenario:
             model,
             control.excursion,
             control.correction_time,
+            control.phase_time,
             1.0 / control.rate,
         ),
         controller=Controller(model, control),

@@ -28,7 +28,7 @@ def spin(size, velocity, seconds):
     data = mujoco.MjData(mj)
     axes = Rotation.from_quat(mj.body_iquat[1], scalar_first=True).as_matrix()
     data.qvel[3:] = axes @ velocity  # along the principal axes
-    now = excursion.start(np.zeros(3))
+    now = excursion.start(0.0, Y)
     for _ in range(round(seconds / PERIOD)):
         mujoco.mj_forward(mj, data)
         omega = read_momentum(mj, data).angular_velocity
@@ -56,13 +56,14 @@ def test_free_cube_about_a_general_axis():
 
 
 def test_start_is_phi_0():
-    now = excursion.start(np.array([0.1, -0.3, 0.2]))
-    assert now.angle.tolist() == [0.1, -0.3, 0.2]
+    now = excursion.start(-0.3, Y)
+    assert now.angle.tolist() == [0.0, -0.3, 0.0]
+    assert now.phase == -0.3
     assert now.orientation.tolist() == [1.0, 0.0, 0.0, 0.0]
 
 
 def test_integrate_leaves_its_input_alone():
-    before = excursion.start(np.zeros(3))
+    before = excursion.start(0.0, Y)
     excursion.integrate(before, np.ones(3), Y, Y, PERIOD, 0.4)
     assert not before.angle.any()
     assert before.orientation.tolist() == [1.0, 0.0, 0.0, 0.0]
@@ -70,7 +71,7 @@ def test_integrate_leaves_its_input_alone():
 
 def coning(tilt, correction_time, seconds, spin_rate=6.0):
     """A body tilted about x that spins about world y; its lateral axis draws a cone."""
-    now = excursion.start(np.zeros(3))
+    now = excursion.start(0.0, Y)
     for i in range(1, round(seconds / PERIOD) + 1):
         attitude = Rotation.from_rotvec(spin_rate * i * PERIOD * Y) * Rotation.from_rotvec(
             [tilt, 0.0, 0.0]
@@ -102,7 +103,7 @@ def test_in_plane_both_are_the_plain_integral():
 
 def test_oriented_error_of_a_body_that_turned_away():
     """Seen at once, without correction: omega itself carried the axis away."""
-    now = excursion.start(np.zeros(3))
+    now = excursion.start(0.0, Y)
     for _ in range(30):
         now = excursion.integrate(now, np.array([0.8, 0.0, 0.0]), Y, Y, PERIOD, NEVER)
     expected = [-0.8 * 30 * PERIOD, 0.0, 0.0]
@@ -115,7 +116,7 @@ def test_correction_time_is_a_time_constant(correction_time):
     """A small drift decays by 1 - period / correction time a step: by about e in that time."""
     tilt = np.array([0.02, 0.0, 0.0])
     lateral = Rotation.from_rotvec(tilt).apply(Y)
-    now = excursion.start(np.zeros(3))
+    now = excursion.start(0.0, Y)
     steps = round(correction_time / PERIOD)
     for _ in range(steps):
         now = excursion.integrate(now, np.zeros(3), lateral, Y, PERIOD, correction_time)
@@ -125,8 +126,31 @@ def test_correction_time_is_a_time_constant(correction_time):
     assert not now.angle.any()  # eq. 1 itself is not corrected
 
 
+@pytest.mark.parametrize("phase_time", [0.5, 3.0])
+@pytest.mark.parametrize("lag", [-2.0, 0.4, 7.0])
+def test_phase_follows_the_integral_and_is_pulled_to_the_trunk(lag, phase_time):
+    """A body that turns at 6 rad/s with its trunk behind: what is missing decays."""
+    now, steps = excursion.start(0.0, Y), round(phase_time / PERIOD)
+    for i in range(1, steps + 1):
+        now = excursion.integrate(now, 6.0 * Y, Y, Y, PERIOD, NEVER)
+        trunk = 6.0 * i * PERIOD - lag
+        now = excursion.keep_phase(now, trunk, PERIOD, phase_time)
+    near = (lag + np.pi) % (2 * np.pi) - np.pi  # whole revolutions do not count
+    missing = now.phase - (trunk + lag - near)
+    assert missing / near == pytest.approx((1 - PERIOD / phase_time) ** steps, rel=1e-6)
+    assert now.angle[1] == pytest.approx(6.0 * steps * PERIOD)  # eq. 1 itself is not corrected
+
+
+def test_phase_without_a_trunk_that_differs_is_the_integral():
+    now = excursion.start(0.3, Y)
+    for i in range(1, 100):
+        now = excursion.integrate(now, -5.0 * Y, Y, Y, PERIOD, 0.4)
+        now = excursion.keep_phase(now, 0.3 - 5.0 * i * PERIOD, PERIOD, 0.4)
+    assert now.phase == pytest.approx(now.angle[1], abs=1e-9)
+
+
 def test_correction_faster_than_a_period_does_not_overshoot():
     lateral = Rotation.from_rotvec([0.01, 0.0, 0.0]).apply(Y)
-    now = excursion.start(np.zeros(3))
+    now = excursion.start(0.0, Y)
     now = excursion.integrate(now, np.zeros(3), lateral, Y, PERIOD, PERIOD / 100)
     assert rotate(now.orientation, Y) == pytest.approx(lateral, abs=1e-6)

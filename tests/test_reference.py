@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from rotctl.errors import InputError
-from rotctl.motion import Clip, load_clip, make_reference_pair
+from rotctl.motion import Clip, ReferenceSettings, load_clip, make_reference_pair
 from rotctl.motion.clip import names
 from rotctl.motion.preview import motion_of
 from rotctl.motion.turning import pelvis_turn
@@ -21,13 +21,17 @@ def clip(**joints):
     return Clip(name="wave", roll_about="left", joints=joints or {"knee": WAVE})
 
 
+def following(window=0.0, lead=0.0, **offsets):
+    return ReferenceSettings(clip="", window=window, lead=lead, offsets=offsets)
+
+
 def column(model, poses, name):
     return poses[:, model.joint_names.index(name)]
 
 
 def test_poses_ahead_and_behind_at_any_phase(world):
     model = world.model
-    pair = make_reference_pair(model, clip(knee_l=WAVE), window=0.1, lead=0.05)
+    pair = make_reference_pair(model, clip(knee_l=WAVE), following(window=0.1, lead=0.05))
     places = 2 * math.pi * np.arange(N + 1) / N
     for phase in (-20.0, -0.001, 0.0, 1.0, 2 * math.pi, 3.3, 1e4):
         found = column(model, pair.at(phase), "knee_l")
@@ -38,7 +42,7 @@ def test_poses_ahead_and_behind_at_any_phase(world):
 
 
 def test_no_jump_where_the_cycle_closes(world):
-    pair = make_reference_pair(world.model, load_clip("forward_roll"), 0.05, 0.02)
+    pair = make_reference_pair(world.model, load_clip("forward_roll"), following(0.05, 0.02))
     around = np.array([pair.at(2 * math.pi * k / 3000) for k in range(-1500, 3000)])
     assert np.abs(np.diff(around, axis=0)).max() < 0.03
     assert around[0] == pytest.approx(around[3000], abs=1e-9)
@@ -47,11 +51,43 @@ def test_no_jump_where_the_cycle_closes(world):
 def test_without_a_window_both_are_the_clip(world):
     model = world.model
     shipped = load_clip("forward_roll")
-    pair = make_reference_pair(model, shipped, window=0.0, lead=0.0)
+    pair = make_reference_pair(model, shipped, following(window=0.0, lead=0.0))
     for k, pose in enumerate(shipped.poses(model)):
         a, b = pair.at(2 * math.pi * k / shipped.samples)
         assert a == pytest.approx(pose, abs=1e-9)
         assert np.array_equal(a, b)
+
+
+def test_offsets_are_added_to_the_clip(world):
+    """Mean, first and second harmonic, by hand; one side or both, on top of each other."""
+    model = world.model
+    offsets = {"knee": [0.2, -0.1, 0.3, 0.05, -0.07], "knee_l": [0.1], "waist_x": [0.0, 0.0, 0.2]}
+    pair = make_reference_pair(model, clip(knee=WAVE), following(**offsets))
+    for k, phase in enumerate(2 * math.pi * np.arange(N) / N):
+        added = 0.2 - 0.1 * math.cos(phase) + 0.3 * math.sin(phase)
+        added += 0.05 * math.cos(2 * phase) - 0.07 * math.sin(2 * phase)
+        pose = pair.at(phase)
+        assert column(model, pose, "knee_r") == pytest.approx([WAVE[k] + added] * 2)
+        assert column(model, pose, "knee_l") == pytest.approx([WAVE[k] + added + 0.1] * 2)
+        assert column(model, pose, "waist_x") == pytest.approx([0.2 * math.sin(phase)] * 2)
+        assert not column(model, pose, "hip_y_l").any()
+    assert pair.start(0.0) == pytest.approx(pair.at(0.0)[0])
+
+
+def test_offsets_keep_within_the_joint_ranges(world):
+    model = world.model
+    pair = make_reference_pair(model, clip(knee=WAVE), following(knee=[9.0]))
+    high = model.joint_range[model.joint_names.index("knee_l"), 1]
+    assert set(column(model, pair.at(1.0), "knee_l")) == {high}
+
+
+def test_an_offset_of_no_joint(world):
+    with pytest.raises(InputError) as error:
+        make_reference_pair(world.model, clip(), following(kne=[0.1]))
+    assert str(error.value) == (
+        "behaviour.reference.offsets names the unknown joint 'kne'; the character's: "
+        + ", ".join(world.model.joint_names)
+    )
 
 
 def test_clipped_to_the_joint_ranges(world):

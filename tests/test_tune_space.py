@@ -77,6 +77,16 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
             "parameters name controller.weights.pose twice",
         ),
         (["parameters"], [], "parameters: too few, at least 2"),
+        (
+            ["parameters", 0, "key"],
+            "controller.x" + "{a,b}" * 40,
+            "parameters: too many, at most 1000",
+        ),
+        (
+            ["parameters", 0, "key"],
+            "controller.gains.{a",
+            "parameters[0]: key must be dotted names, as in controller.gains.linear_damping[0]",
+        ),
         (["runs"], None, "runs: must be keys with values"),
         (
             ["runs", "first_seed"],
@@ -102,13 +112,27 @@ def test_one_line_for_a_bad_value(complaint, where, value, said):
 
 def test_one_line_for_what_is_missing_or_no_space(complaint, tmp_path):
     assert complaint(lambda data: data.pop("runs")) == "runs: missing, it cannot be left out"
-    with pytest.raises(InputError, match="^nope: no such space; valid: forward_roll_1, rolling_ga"):
+    with pytest.raises(
+        InputError, match="^nope: no such space; valid: clip, forward_roll_1, roll"
+    ):
         load_space("nope")
     with pytest.raises(InputError, match="none.yaml: No such file or directory$"):
         load_space(str(tmp_path / "none.yaml"))
     (tmp_path / "torn.yaml").write_text("a: [")
     with pytest.raises(InputError, match="torn.yaml: is no YAML: while parsing"):
         load_space(str(tmp_path / "torn.yaml"))
+
+
+def test_braces_stand_for_several_keys(tmp_path):
+    data = yaml.safe_load(GAINS.read_text())
+    data["parameters"] = [
+        {"key": "a.{b, c}[{0,1}]", "low": 0.0, "high": 1.0, "unit": "rad", "reason": "why"},
+        {"key": "a.d", "low": 0.0, "high": 2.0, "unit": "s"},
+    ]
+    (tmp_path / "x.yaml").write_text(yaml.safe_dump(data))
+    found = load_space(str(tmp_path / "x.yaml")).parameters
+    assert [p.key for p in found] == ["a.b[0]", "a.b[1]", "a.c[0]", "a.c[1]", "a.d"]
+    assert {(p.high, p.unit, p.reason) for p in found[:4]} == {(1.0, "rad", "why")}
 
 
 def test_numbers_go_in_and_out_by_key_and_the_rest_stays():

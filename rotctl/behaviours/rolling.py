@@ -36,7 +36,7 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array
+from rotctl.rotations import Array, cross, rotate
 from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
@@ -111,6 +111,7 @@ class Rolling:
         model: Model,
         excursion_name: ExcursionName,
         correction_time: float,
+        phase_time: float,
         period: float,
     ) -> None:
         """Prepare the poses.
@@ -118,6 +119,7 @@ class Rolling:
         Args:
             excursion_name: how AE is measured.
             correction_time: of the `oriented` excursion [s].
+            phase_time: of the phase [s].
             period: of the control [s].
         """
         facing = FACING[settings.roll_about]
@@ -125,9 +127,11 @@ class Rolling:
         self._trunk_axis = facing.trunk_axis
         self._name = excursion_name
         self._correction_time = correction_time
+        self._phase_time = phase_time
         self._period = period
         self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * ROLLING_AXIS
-        slope = model.ground.slope
+        self._slope = slope = model.ground.slope
+        self._front = rotate(facing.orientation, np.array([1.0, 0.0, 0.0]))
         along = slope if settings.align_with_slope else 0.0
         self._velocity = settings.speed * np.array([np.cos(along), 0.0, np.sin(along)])
         self._poses = _poses(settings, model)
@@ -138,7 +142,7 @@ class Rolling:
 
     def begin(self, phase: float) -> Excursion:
         """Excursion at the start: phi_0 is the pelvis's pitch against the slope."""
-        return excursion.start(phase * ROLLING_AXIS)
+        return excursion.start(phase, ROLLING_AXIS)
 
     def trunk_axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
@@ -154,6 +158,7 @@ class Rolling:
             self._period,
             self._correction_time,
         )
+        now = excursion.keep_phase(now, self._turned(state), self._period, self._phase_time)
         if self._name == "root":
             return excursion.on_root(now, state.position[3:7], self.orientation)
         return now
@@ -163,7 +168,13 @@ class Rolling:
 
         Forward, pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
         """
-        return float(ROLLING_AXIS @ now.angle)
+        return now.phase
+
+    def _turned(self, state: State) -> float:
+        """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
+        front = state.trunk_axes[:, 0]
+        across = ROLLING_AXIS @ cross(self._front, front)
+        return math.atan2(across, self._front @ front) + self._slope
 
     def desired(self, state: State, now: Excursion) -> Desired:
         """What rolling wants at this instant."""
@@ -193,4 +204,4 @@ def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:
             f"behaviour.reference.clip={reference.clip}: rolls about {clip.roll_about}, "
             f"but behaviour.roll_about={settings.roll_about}"
         )
-    return make_reference_pair(model, clip, reference.window, reference.lead)
+    return make_reference_pair(model, clip, reference)

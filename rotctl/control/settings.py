@@ -61,6 +61,7 @@ class ControllerSettings:
         supervisor: inclusion test for contacts, see `rotctl.control.supervisor`.
         excursion: how AE is measured, see `rotctl.mechanics.excursion`.
         correction_time: of the `oriented` excursion [s].
+        phase_time: of the phase by which poses are looked up [s].
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
     """
 
@@ -73,6 +74,7 @@ class ControllerSettings:
     thresholds: Thresholds
     excursion: ExcursionName
     correction_time: Positive
+    phase_time: Positive
     friction: Positive
     weights: Weights
     gains: Gains

@@ -12,9 +12,14 @@ the trunk's mean axis with a time constant.
 
 `root` is what the paper holds against AE: the orientation of the root body stands for that
 of the whole body. In-plane, all three are the plain integral.
+
+The *phase* by which poses are looked up is the in-plane excursion too. For the same reason it
+drifts from the body, in 20 s by up to a fifth of a revolution, and then poses come too late or
+too early: `keep_phase` pulls it to how far the trunk has turned, with a time constant of its own.
 """
 
 from dataclasses import dataclass, replace
+from math import pi, tau
 from typing import Literal
 
 import numpy as np
@@ -32,15 +37,19 @@ class Excursion:
         angle: (3,) phi, the component-wise integral of omega [rad].
         orientation: (4,) the integral of omega as an orientation, unit quaternion; under
             `root` how far the root has turned away from phase 0.
+        phase: the in-plane excursion by which poses are looked up [rad].
     """
 
     angle: Array
     orientation: Array
+    phase: float
 
 
-def start(angle: Array) -> Excursion:
-    """Excursion at the start of a run, phi_0 = `angle` (3,) [rad]."""
-    return Excursion(angle=np.asarray(angle, dtype=float), orientation=np.array([1.0, 0, 0, 0]))
+def start(phase: float, rolling_axis: Array) -> Excursion:
+    """Excursion at the start of a run: phi_0 is the `phase` [rad] about the rolling axis (3,)."""
+    return Excursion(
+        angle=phase * rolling_axis, orientation=np.array([1.0, 0, 0, 0]), phase=float(phase)
+    )
 
 
 def integrate(
@@ -64,7 +73,23 @@ def integrate(
     orientation = advance(excursion.orientation, turn)
     drift = cross(rotate(orientation, rolling_axis), trunk_axis)
     pulled = advance(orientation, drift * min(1.0, period / correction_time))
-    return Excursion(angle=excursion.angle + turn, orientation=pulled)
+    return Excursion(
+        angle=excursion.angle + turn,
+        orientation=pulled,
+        phase=excursion.phase + float(rolling_axis @ turn),
+    )
+
+
+def keep_phase(excursion: Excursion, turned: float, period: float, phase_time: float) -> Excursion:
+    """The same with its phase pulled to the trunk.
+
+    Args:
+        turned: how far the trunk has turned from phase 0 [rad]; whole revolutions are ignored.
+        period: [s].
+        phase_time: time constant [s].
+    """
+    drift = (turned - excursion.phase + pi) % tau - pi
+    return replace(excursion, phase=excursion.phase + drift * min(1.0, period / phase_time))
 
 
 def on_root(excursion: Excursion, root: Array, at_phase_0: Array) -> Excursion:

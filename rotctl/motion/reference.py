@@ -1,10 +1,12 @@
 """Phase-locked reference poses: r_a and r_b a little after and before where the roll is now.
 
 [Brown2013] section 4.3 with excursion in place of time: r_a = r(theta + lead + window) and
-r_b = r(theta + lead - window), where r is one cycle of a clip over the phase theta.
+r_b = r(theta + lead - window), where r is one cycle of a clip over the phase theta. A captured
+motion seldom rolls on as it is; `offsets` bend it until it does, smoothly and by a few numbers.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from math import floor, tau
 from typing import Annotated
 
@@ -13,11 +15,13 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
-from rotctl.motion.clip import Clip
+from rotctl.motion.clip import Clip, joint_columns
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite, NonNegative
 
 STEPS = 720  # of the table that `at` reads: half a degree of phase
+
+Harmonics = Annotated[list[Finite], Field(min_length=1, max_length=17)]
 
 
 @validated(frozen=True, config=STRICT)
@@ -29,11 +33,14 @@ class ReferenceSettings:
         window: half the distance between r_a and r_b [rev of phase].
         lead: by how much their middle is ahead of the roll [rev of phase]; a pose takes
             time to reach.
+        offsets: by joint name, what is added to the clip [rad]: its mean, cosine and sine over
+            the phase, then cosine and sine of twice the phase, and so on. No side is both.
     """
 
     clip: str
     window: Annotated[NonNegative, Field(le=0.5)]
     lead: Annotated[Finite, Field(ge=-0.5, le=0.5)]
+    offsets: dict[str, Harmonics] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -61,22 +68,36 @@ class ReferencePair:
         return np.asarray(low + (place - row) * (self.table[row + 1] - low))
 
 
-def make_reference_pair(model: Model, clip: Clip, window: float, lead: float) -> ReferencePair:
+def make_reference_pair(model: Model, clip: Clip, settings: ReferenceSettings) -> ReferencePair:
     """The poses around the phase of a clip.
 
-    Args:
-        window: half the distance between r_a and r_b [rev of phase].
-        lead: of their middle [rev of phase].
-
     Raises:
-        InputError: the clip names a joint that the model has not.
+        InputError: the clip or an offset names a joint that the model has not.
     """
-    phases = np.linspace(0.0, 1.0, STEPS + 1)
-    poses = clip.poses(model)
-    return ReferencePair(
-        poses,
-        np.stack([periodic(poses, phases + lead + side * window) for side in (1.0, -1.0)], axis=1),
-    )
+    cycle = clip.poses(model) + _added(model, settings.offsets, clip.samples)
+    cycle = np.clip(cycle, *model.joint_range.T)
+    middle = np.linspace(0.0, 1.0, STEPS + 1) + settings.lead
+    sides = [periodic(cycle, middle + side * settings.window) for side in (1.0, -1.0)]
+    return ReferencePair(cycle, np.stack(sides, axis=1))
+
+
+def _added(model: Model, offsets: Mapping[str, Sequence[float]], samples: int) -> Array:
+    """Offsets by joint name to angles (samples, nu) [rad]."""
+    phases = tau * np.arange(samples) / samples
+    angles = np.zeros((samples, len(model.joint_names)))
+    for name, harmonics in offsets.items():
+        columns = joint_columns(model, name, "behaviour.reference.offsets")
+        angles[:, columns] += fourier(harmonics, phases)[:, None]
+    return angles
+
+
+def fourier(harmonics: Sequence[float], phases: Array) -> Array:
+    """Mean, cosine, sine, cosine of twice the phase, ... at phases (n,) [rad]."""
+    waves = [
+        np.sin((k + 1) // 2 * phases) if k and k % 2 == 0 else np.cos((k + 1) // 2 * phases)
+        for k in range(len(harmonics))
+    ]
+    return np.asarray(np.asarray(harmonics) @ np.array(waves))
 
 
 def periodic(samples: Array, places: Array) -> Array:

@@ -11,6 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.tune.braces import MOST, expanded
 
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
 _KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d+\])?")
@@ -49,7 +50,8 @@ class Parameter:
     """One number of the config that the search may change.
 
     Attributes:
-        key: dotted, an element of a list in brackets: `controller.gains.linear_damping[0]`.
+        key: dotted, an element of a list in brackets: `controller.gains.linear_damping[0]`; in a
+            file, braces stand for several: `behaviour.poses.{a,b}.knee`.
         low, high: its range, in `unit`.
         scale: `log` for what is known only to a factor.
         reason: for the range.
@@ -153,7 +155,7 @@ class Space:
     name: Annotated[str, Field(pattern=r"^[A-Za-z]\w*$")]
     title: str
     base: Overrides
-    parameters: Annotated[list[Parameter], Field(min_length=2)]
+    parameters: Annotated[list[Parameter], Field(min_length=2, max_length=MOST)]
     runs: Runs
     objective: Objective
     stopping: Stopping
@@ -181,6 +183,7 @@ _WORDS = {
     "dataclass_type": "must be keys with values",
     "string_pattern_mismatch": "must be letters, digits and _, a letter first",
     "too_short": "too few, at least {min_length}",
+    "too_long": "too many, at most {max_length}",
 }
 
 
@@ -209,7 +212,9 @@ def load_space(name: str) -> Space:
     if not isinstance(data, dict):
         raise InputError(f"{path}: must be keys with values: {', '.join(_fields(Space))}")
     try:
-        return _ADAPTER.validate_python(data)
+        return _ADAPTER.validate_python(
+            {k: expanded(v) if k == "parameters" else v for k, v in data.items()}
+        )
     except ValidationError as error:
         raise InputError(f"{path}: {_complaint(error.errors(include_url=False)[0])}") from None
 
