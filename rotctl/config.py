@@ -16,7 +16,7 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 from pydantic import Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
@@ -79,7 +79,10 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
-            data: Any = OmegaConf.to_container(compose("config", overrides), resolve=True)
+            config = compose("config", overrides)
+            data: Any = OmegaConf.to_container(config, resolve=True, throw_on_missing=True)
+    except MissingMandatoryValue as error:
+        raise InputError(f"{error.full_key}: missing, give it as {error.full_key}=VALUE") from None
     except (HydraException, OmegaConfBaseException, ValueError) as error:
         raise InputError(_explain(error, keys, overrides)) from None
     return data

@@ -89,6 +89,10 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "controller.gains.linear_damping: none, it is a value",
         ),
         ("~seed", "seed: missing, it cannot be left out"),
+        (
+            "behaviour=captured_roll",
+            "behaviour.reference.clip: missing, give it as behaviour.reference.clip=VALUE",
+        ),
         ("~physics", "physics: missing, it cannot be left out"),
         # Choices.
         ("start=foo", 'start="foo": no such choice; valid: ' + STARTS),

@@ -60,7 +60,7 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 1, "hi"],
             1,
-            "unknown key 'parameters[1].hi'; valid keys: key, low, high, unit, scale, reason",
+            "unknown key 'parameters[1].hi'; valid keys: key, low, high, unit, scale, start, reason",
         ),
         (["parameters", 1, "high"], 100.0, "parameters[1]: low=200 must be below high=100"),
         (["parameters", 1, "low"], -1.0, "parameters[1]: low=-1 must be above 0 on a log scale"),
@@ -112,7 +112,7 @@ def test_one_line_for_a_bad_value(complaint, where, value, said):
 
 def test_one_line_for_what_is_missing_or_no_space(complaint, tmp_path):
     assert complaint(lambda data: data.pop("runs")) == "runs: missing, it cannot be left out"
-    with pytest.raises(InputError, match="^nope: no such space; valid: clip, forward_roll_1, roll"):
+    with pytest.raises(InputError, match="^nope: no such space; valid: clip, clip_one"):
         load_space("nope")
     with pytest.raises(InputError, match="none.yaml: No such file or directory$"):
         load_space(str(tmp_path / "none.yaml"))
@@ -131,6 +131,29 @@ def test_braces_stand_for_several_keys(tmp_path):
     found = load_space(str(tmp_path / "x.yaml")).parameters
     assert [p.key for p in found] == ["a.b[0]", "a.b[1]", "a.c[0]", "a.c[1]", "a.d"]
     assert {(p.high, p.unit, p.reason) for p in found[:4]} == {(1.0, "rad", "why")}
+
+
+def test_a_number_that_the_config_lacks_begins_at_its_start(tmp_path):
+    data = yaml.safe_load((conf_dir() / "tune" / "clip.yaml").read_text())
+    (tmp_path / "x.yaml").write_text(yaml.safe_dump(data))
+    space = load_space(str(tmp_path / "x.yaml"))
+    given = "+behaviour.reference.offsets={knee: [0.2, 0.1], waist_x: [0.3]}"
+    (found,) = {str(v["behaviour"]["reference"]["offsets"]) for v in variations(space, [given])}
+    offsets = yaml.safe_load(found)
+    assert offsets["knee"] == [0.2, 0.1, 0.0, 0.0, 0.0]
+    assert offsets["waist_x"] == [0.3]
+    assert offsets["hip_x"] == [0.0]
+    data["parameters"][0] = {
+        "key": "controller.rate.x",
+        "low": -1.0,
+        "high": 1.0,
+        "unit": "-",
+        "start": 0,
+    }
+    (tmp_path / "x.yaml").write_text(yaml.safe_dump(data))
+    space = load_space(str(tmp_path / "x.yaml"))
+    with pytest.raises(InputError, match='^controller.rate={"x": -1.0}: must be a'):
+        start_values(space, variations(space, [])[0])
 
 
 def test_numbers_go_in_and_out_by_key_and_the_rest_stays():

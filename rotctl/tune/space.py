@@ -54,6 +54,7 @@ class Parameter:
             file, braces stand for several: `behaviour.poses.{a,b}.knee`.
         low, high: its range, in `unit`.
         scale: `log` for what is known only to a factor.
+        start: where the search begins if the config does not have this number.
         reason: for the range.
     """
 
@@ -62,6 +63,7 @@ class Parameter:
     high: Finite
     unit: str
     scale: Literal["linear", "log"] = "linear"
+    start: Finite | None = None
     reason: str = ""
 
     def __post_init__(self) -> None:

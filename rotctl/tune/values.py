@@ -81,7 +81,7 @@ def variations(space: Space, overrides: list[str]) -> list[Any]:
     except ValueError as error:
         raise InputError(str(error)) from None
     below = [f"duration={space.runs.duration:.10g}", *space.base, *overrides]
-    return [to_dict(load([*below, *changes])) for changes in space.runs.variations]
+    return [_begun(space, to_dict(load([*below, *changes]))) for changes in space.runs.variations]
 
 
 def configs(data: Sequence[Any], values: Mapping[str, float], seeds: Sequence[int]) -> list[Config]:
@@ -108,13 +108,34 @@ def final_seeds(space: Space, seed: int) -> range:
     return range(first, first + space.runs.final)
 
 
+def _begun(space: Space, data: Any) -> Any:
+    """Plain data, with the numbers that it does not have and the space has a start for."""
+    for parameter in space.parameters:
+        if parameter.start is not None and not _has(data, path(parameter.key)):
+            data = _replaced(data, path(parameter.key), parameter.start)
+    return data
+
+
+def _has(data: Any, parts: tuple[str | int, ...]) -> bool:
+    for part in parts:
+        try:
+            data = data[part]
+        except (KeyError, IndexError, TypeError):
+            return False
+    return True
+
+
 def _replaced(data: Any, parts: tuple[str | int, ...], value: float) -> Any:
     if not parts:
         return value
     head, rest = parts[0], parts[1:]
-    changed: Any = dict(data) if isinstance(data, dict) else list(data)
-    changed[head] = _replaced(data[head], rest, value)
-    return changed
+    if isinstance(head, int):
+        items = list(data) if isinstance(data, list | tuple) else []
+        items += [0.0] * (head + 1 - len(items))
+        items[head] = _replaced(items[head], rest, value)
+        return items
+    members = data if isinstance(data, dict) else {}
+    return {**members, head: _replaced(members.get(head), rest, value)}
 
 
 def _members(data: Any) -> str:
