@@ -60,7 +60,8 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 1, "hi"],
             1,
-            "unknown key 'parameters[1].hi'; valid keys: key, low, high, unit, scale, start, reason",
+            "unknown key 'parameters[1].hi'; valid keys: key, low, high, unit, scale, start, "
+            "reason",
         ),
         (["parameters", 1, "high"], 100.0, "parameters[1]: low=200 must be below high=100"),
         (["parameters", 1, "low"], -1.0, "parameters[1]: low=-1 must be above 0 on a log scale"),
