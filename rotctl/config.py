@@ -186,6 +186,8 @@ def _explain(error: Exception, keys: list[str], overrides: list[str]) -> str:
 def _unknown_key(key: str, data: Any) -> str:
     """What is wrong with a key, and the valid ones; empty if it is in `data`."""
     parts = key.split(".")
+    if choices(key) and key not in data:
+        return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
     for depth, part in enumerate(parts):
         inner = _member(data, part)
         if inner is _NOTHING:

@@ -57,5 +57,10 @@ def groups() -> dict[str, dict[str, str]]:
 
 
 def _first_comment(text: str) -> str:
-    first = text.partition("\n")[0]
-    return first.removeprefix("#").strip() if first.startswith("#") else ""
+    """The first line of the comment that a file opens with, less Hydra's own `@package`."""
+    for line in text.splitlines():
+        if not line.startswith("#"):
+            break
+        if not line.startswith("# @"):
+            return line.removeprefix("#").strip()
+    return ""

@@ -89,10 +89,13 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "controller.gains.linear_damping: none, it is a value",
         ),
         ("~seed", "seed: missing, it cannot be left out"),
+        ("seed=???", "seed: missing, give it as seed=VALUE"),
         (
-            "behaviour=captured_roll",
-            "behaviour.reference.clip: missing, give it as behaviour.reference.clip=VALUE",
+            "reference=humanoid3d_roll",
+            "reference is no part of a config, its choices are added to one: "
+            "write +reference=CHOICE",
         ),
+        ("+reference=nope", 'reference="nope": no such choice; valid: humanoid3d_roll'),
         ("~physics", "physics: missing, it cannot be left out"),
         # Choices.
         ("start=foo", 'start="foo": no such choice; valid: ' + STARTS),
