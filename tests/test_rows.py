@@ -45,7 +45,7 @@ def test_it_rolls(row):
 
 
 def test_the_shoulder_roll_goes_over_one_shoulder():
-    """The back meets the ground left of the centre of mass, the hips meet it to the right."""
+    """The back meets the ground left of the centre of mass, the loins meet it to the right."""
     buffer, _ = rolled("behaviour=forward_roll_3")
     model = build(load(["behaviour=forward_roll_3"])).model.mj
     force = np.linalg.norm(buffer.contacts.force_realised.astype(float), axis=2)
@@ -55,9 +55,8 @@ def test_the_shoulder_roll_goes_over_one_shoulder():
         weight = force * (buffer.contacts.body == model.body(name).id)
         return float((weight * beside).sum() / weight.sum())
 
-    assert mean("chest") > 0.03
-    assert mean("waist") < -0.03
-    assert mean("pelvis") < -0.02
+    assert mean("chest") > 0.04
+    assert mean("waist") < -0.04
 
 
 def test_the_log_roll_stays_long():
