@@ -258,3 +258,12 @@ def test_plain_data_is_checked_the_same_way(plain):
         r"character\.bodies\.0\.geoms\.0: name, size, start, mass, end, colour$",
     ):
         check(data)
+
+
+def test_a_reference_is_added_to_a_behaviour():
+    plain = load(["behaviour=forward_roll_2"]).behaviour.reference
+    bent = load(["behaviour=forward_roll_2", "+reference=humanoid3d_roll"]).behaviour.reference
+    assert plain.clip == bent.clip == "forward_roll_2"
+    assert not plain.offsets
+    assert bent.offsets["neck_y"][0] > 1.0
+    assert bent.lead != plain.lead

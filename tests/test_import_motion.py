@@ -13,11 +13,15 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from rotctl.cli import main
+from rotctl.config import load
 from rotctl.listing import conf_dir
 from rotctl.motion import load_clip
 from rotctl.motion.importing import import_motion, read_capture
 from rotctl.motion.preview import motion_of
 from rotctl.motion.turning import rotation_between_postures
+from rotctl.motion.writing import text
+from rotctl.run import in_memory
+from rotctl.scenario import build
 
 SHARED = Path(__file__).resolve().parents[1].parent / "shared" / "motions"
 LIMBS = ("hip", "knee", "shoulder", "elbow")
@@ -287,3 +291,30 @@ def test_the_real_roll_mirror_averaged():
     assert made.span == pytest.approx(1.0, abs=0.05)
     assert np.degrees(made.closed.pelvis_gap) < 5.0
     assert "hip_y" in made.clip.joints
+
+
+def test_the_captured_roll_rolls_on_where_it_is_bent(tmp_path):
+    """As captured it stalls in its first revolution."""
+    path = SHARED / "DeepMimic/humanoid3d_roll.txt"
+    if not path.exists():
+        pytest.skip(f"no {path}")
+    made = import_motion(adult(), "adult", path, read_capture(path, None, None), symmetrise=True)
+    clip = tmp_path / "roll.yaml"
+    clip.write_text(text(made.clip))
+
+    def revolutions(*overrides):
+        config = load(
+            [
+                "behaviour=forward_roll_2",
+                f"behaviour.reference.clip={clip}",
+                "duration=5",
+                *overrides,
+            ]
+        )
+        buffer, complaint = in_memory(build(config))
+        assert not complaint
+        phase = buffer.trajectory.phase
+        return (phase[-1] - phase[0]) / (2 * np.pi)
+
+    assert revolutions() < 1.5
+    assert sum(revolutions("+reference=humanoid3d_roll", f"seed={s}") > 4.0 for s in range(4)) >= 3
