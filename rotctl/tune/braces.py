@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from itertools import islice
+from itertools import islice, product
 from typing import Any
 
 MOST = 1000  # parameters of one space; braces multiply
@@ -27,9 +27,7 @@ def _all(parameters: Iterable[Any]) -> Iterator[Any]:
 
 
 def _keys(key: str) -> Iterator[str]:
-    braces = _BRACES.search(key)
-    if not braces:
-        yield key
-        return
-    for choice in braces.group(1).split(","):
-        yield from _keys(key[: braces.start()] + choice.strip() + key[braces.end() :])
+    pieces = _BRACES.split(key)  # text and choices in turn
+    choices = [piece.split(",") if i % 2 else [piece] for i, piece in enumerate(pieces)]
+    for chosen in product(*choices):
+        yield "".join(piece.strip() for piece in chosen)

@@ -14,7 +14,7 @@ from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.braces import MOST, expanded
 
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
-_KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d+\])?")
+_KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d{1,3}\])?")
 _DRAWN = re.compile(r"[+~]*seed\b")
 
 SamplerName = Literal["cmaes", "tpe"]
