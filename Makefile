@@ -61,7 +61,8 @@ lint: setup ## style, layout, types, floors: changes nothing
 	$(BIN)/lint-imports
 
 # Three starts a row take minutes on two cores: make reproduce QUICK=1
-REPRODUCE := sweeps/reproduce$(if $(QUICK),-quick)
+# The same commit goes on where it was interrupted; another one must not mix its runs with the old.
+REPRODUCE = sweeps/reproduce$(if $(QUICK),-quick)/$(or $(shell git describe --always --dirty 2>/dev/null),unversioned)
 .PHONY: reproduce
 reproduce: setup ## run Table 1 and the contrasts, build the page site/index.html (QUICK=1: three starts a row)
 	for folder in 1-table1 2-contrasts; do \
