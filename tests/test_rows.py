@@ -2,8 +2,10 @@
 
 import re
 
+import mujoco
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rotctl.config import load
 from rotctl.errors import InputError
@@ -88,3 +90,25 @@ def test_a_clip_that_does_not_fit(overrides, message):
 def test_poses_or_a_reference():
     with pytest.raises(InputError, match="give either poses or a reference, not both and not nei"):
         load(["behaviour=forward_roll_2", "~behaviour.reference"])
+
+
+@pytest.mark.parametrize(
+    "row", ["forward_roll_2", "backward_roll_2", "sideways_roll", "incline", "decline"]
+)
+def test_the_phase_keeps_to_the_trunk(row):
+    """Against the turn of the spine's bodies, from the logged positions alone."""
+    scenario = build(load([f"behaviour={row}", "duration=10"]))
+    model, buffer = scenario.model, in_memory(scenario)[0]
+    data = mujoco.MjData(model.mj)
+    upright = Rotation.from_quat(scenario.behaviour.orientation, scalar_first=True)
+    missing = []
+    for position, phase in zip(
+        buffer.trajectory.qpos[-200:], buffer.trajectory.phase[-200:], strict=True
+    ):
+        data.qpos[:] = position
+        mujoco.mj_kinematics(model.mj, data)
+        spine = [data.body(name).xmat.reshape(3, 3) for name in ("pelvis", "waist", "chest")]
+        turned = (Rotation.from_matrix(spine).mean() * upright.inv()).as_matrix()
+        pitch = np.arctan2(turned[0, 2] - turned[2, 0], turned[0, 0] + turned[2, 2])
+        missing.append(np.exp(1j * (phase - model.ground.slope - pitch)))
+    assert abs(np.angle(np.mean(missing))) < 0.5  # 0.6 without the pull, uphill and downhill
