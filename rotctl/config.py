@@ -216,6 +216,7 @@ def _member(data: Any, part: int | str) -> Any:
 
 _WORDS = {
     "tuple_type": "must be a list, in brackets",
+    "list_type": "must be a list, in brackets",
     "dict_type": "must be keys with values",
     "dataclass_type": "must be keys with values",
 }

@@ -267,3 +267,16 @@ def test_a_reference_is_added_to_a_behaviour():
     assert not plain.offsets
     assert bent.offsets["neck_y"][0] > 1.0
     assert bent.lead != plain.lead
+
+
+@pytest.mark.parametrize(
+    ("offsets", "said"),
+    [
+        ("{knee: 0.2}", "behaviour.reference.offsets.knee=0.2: must be a list, in brackets"),
+        ("{knee: []}", "behaviour.reference.offsets.knee=[]: too few values, at least 1"),
+    ],
+)
+def test_bad_offsets_are_one_line(offsets, said):
+    with pytest.raises(InputError) as caught:
+        load(["behaviour=forward_roll_2", f"+behaviour.reference.offsets={offsets}"])
+    assert str(caught.value) == said
