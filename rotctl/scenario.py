@@ -49,14 +49,7 @@ def build(config: Config) -> Scenario:
     return Scenario(
         config=config,
         model=model,
-        behaviour=Rolling(
-            config.behaviour,
-            model,
-            control.excursion,
-            control.correction_time,
-            control.phase_time,
-            1.0 / control.rate,
-        ),
+        behaviour=Rolling(config.behaviour, model, control),
         controller=Controller(model, control),
         stepper=_stepper(config.physics, model),
         start=starts.draw(

@@ -20,10 +20,10 @@ import numpy as np
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.control import Desired
+from rotctl.control import ControllerSettings, Desired
 from rotctl.errors import InputError
 from rotctl.mechanics import excursion
-from rotctl.mechanics.excursion import Excursion, ExcursionName
+from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import (
@@ -109,30 +109,24 @@ class Rolling:
         self,
         settings: RollingSettings,
         model: Model,
-        excursion_name: ExcursionName,
-        correction_time: float,
-        phase_time: float,
-        period: float,
+        control: ControllerSettings,
     ) -> None:
         """Prepare the poses.
 
         Args:
-            excursion_name: how AE is measured.
-            correction_time: of the `oriented` excursion [s].
-            phase_time: of the phase [s].
-            period: of the control [s].
+            control: how AE and the phase are measured, and how often.
         """
         facing = FACING[settings.roll_about]
         self.orientation = facing.orientation
         self._trunk_axis = facing.trunk_axis
-        self._name = excursion_name
-        self._correction_time = correction_time
-        self._phase_time = phase_time
-        self._period = period
+        self._name = control.excursion
+        self._correction_time = control.correction_time
+        self._phase_time = control.phase_time
+        self._period = 1.0 / control.rate
         self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * ROLLING_AXIS
-        self._slope = slope = model.ground.slope
+        self._slope = model.ground.slope
         self._front = rotate(facing.orientation, np.array([1.0, 0.0, 0.0]))
-        along = slope if settings.align_with_slope else 0.0
+        along = self._slope if settings.align_with_slope else 0.0
         self._velocity = settings.speed * np.array([np.cos(along), 0.0, np.sin(along)])
         self._poses = _poses(settings, model)
 

@@ -21,7 +21,7 @@ from rotctl.settings import STRICT, Finite, NonNegative
 
 STEPS = 720  # of the table that `at` reads: half a degree of phase
 
-Harmonics = Annotated[list[Finite], Field(min_length=1, max_length=17)]
+Harmonics = Annotated[list[Finite], Field(min_length=1, max_length=17)]  # a mean and up to eight
 
 
 @validated(frozen=True, config=STRICT)
@@ -87,17 +87,15 @@ def _added(model: Model, offsets: Mapping[str, Sequence[float]], samples: int) -
     angles = np.zeros((samples, len(model.joint_names)))
     for name, harmonics in offsets.items():
         columns = joint_columns(model, name, "behaviour.reference.offsets")
-        angles[:, columns] += fourier(harmonics, phases)[:, None]
+        angles[:, columns] += _fourier(harmonics, phases)[:, None]
     return angles
 
 
-def fourier(harmonics: Sequence[float], phases: Array) -> Array:
+def _fourier(harmonics: Sequence[float], phases: Array) -> Array:
     """Mean, cosine, sine, cosine of twice the phase, ... at phases (n,) [rad]."""
-    waves = [
-        np.sin((k + 1) // 2 * phases) if k and k % 2 == 0 else np.cos((k + 1) // 2 * phases)
-        for k in range(len(harmonics))
-    ]
-    return np.asarray(np.asarray(harmonics) @ np.array(waves))
+    turns = [n * phases for n in range(1, len(harmonics) // 2 + 1)]
+    waves = [np.ones_like(phases), *(wave(turn) for turn in turns for wave in (np.cos, np.sin))]
+    return np.asarray(np.asarray(harmonics) @ np.array(waves[: len(harmonics)]))
 
 
 def periodic(samples: Array, places: Array) -> Array:

@@ -4,7 +4,7 @@ Row velocities are w = A p + b for impulses p. A unilateral row (a contact's nor
 limit) wants 0 <= p and 0 <= w, one of them zero. A friction row belongs to a normal row n and
 wants w = 0 with |p| <= mu p_n, or |p| = mu p_n against w. [Brown2013] eq. 8, after [Erleben2007].
 
-The plain method bounds friction by the normal impulse of the moment. In up to one state of 100 of
+The plain method bounds friction by the normal impulse of the moment. In up to one state of 200 of
 a roll it then goes round in circles for ever, several dm/s from a solution that does exist. A
 bound that goes only part of the way, `follow`, towards each new mu p_n finds it.
 """

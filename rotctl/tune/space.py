@@ -14,6 +14,7 @@ from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.braces import MOST, expanded
 
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
+# An index of three digits is plenty: a list is made as long as that.
 _KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d{1,3}\])?")
 _DRAWN = re.compile(r"[+~]*seed\b")
 
