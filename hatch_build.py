@@ -16,10 +16,11 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 SOURCES = (Path("rotctl/control/compiled.c"), Path("rotctl/simulation/pgs.c"))
 SLOWER = "rotctl will use its numpy reference instead, which is a few times slower"
-# Sums may be reordered, which lets them be vectorised; numbers that are not finite stay so.
+# Sums keep their order and products are rounded before they are added: with that, every compiler
+# and every level of optimisation gives the same bits.
 FLAGS = [
     *("-O3", "-std=c11", "-fPIC", "-shared", "-Wall", "-Wextra"),
-    *("-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math", "-fno-math-errno"),
+    *("-ffp-contract=off", "-fno-trapping-math", "-fno-math-errno"),
 ]
 
 

@@ -15,9 +15,10 @@ from rotctl.wording import one_line
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
-    # One BLAS thread: matrices here are small, and runs in parallel are worth more.
+    # One BLAS thread, whatever the user's shell says: matrices are small, runs in parallel are
+    # worth more, and more threads add up in another order.
     for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")
+        os.environ[name] = "1"
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)

@@ -22,6 +22,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control import ControllerSettings, Desired
 from rotctl.errors import InputError
+from rotctl.linear import product
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.model import Model
@@ -36,7 +37,7 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array, cross, rotate
+from rotctl.rotations import Array, cross, dot, rotate
 from rotctl.settings import STRICT, Finite
 
 ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
@@ -140,7 +141,7 @@ class Rolling:
 
     def trunk_axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
-        return state.trunk_axes @ self._trunk_axis
+        return product(state.trunk_axes, self._trunk_axis)
 
     def advance(self, before: Excursion, state: State) -> Excursion:
         """Excursion now, from that of the previous control step."""
@@ -167,8 +168,8 @@ class Rolling:
     def _turned(self, state: State) -> float:
         """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
         front = state.trunk_axes[:, 0]
-        across = ROLLING_AXIS @ cross(self._front, front)
-        return math.atan2(across, self._front @ front) + self._slope
+        across = dot(ROLLING_AXIS, cross(self._front, front))
+        return math.atan2(across, dot(self._front, front)) + self._slope
 
     def desired(self, state: State, now: Excursion) -> Desired:
         """What rolling wants at this instant."""

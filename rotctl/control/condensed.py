@@ -18,10 +18,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl import linear
 from rotctl.control.answer import Answer
 from rotctl.control.cone import solve_cone
 from rotctl.control.terms import Terms
-from rotctl.qp import Solver
+from rotctl.linear import NotPositiveDefiniteError, product
+from rotctl.qp import Solution, Solver
 from rotctl.rotations import Array
 
 LIMIT_SLACK = 1e-6  # [N m] a torque this far beyond its limit is rounding, and is clipped
@@ -59,16 +61,20 @@ def _reduced(terms: Terms, solver: Solver, start: Array | None) -> Answer:
     s = weights.contact_velocity * terms.period**2
     H = np.zeros((n + 1, n + 1))
     f = np.zeros(n + 1)
-    reach = np.empty((n, n + 2))  # y = reach @ [lambda, gamma, 1]
-    pulled: Array = np.zeros((n, n + 2))  # K @ reach
+    reach = np.empty((n, n + 2))  # y = reach [lambda, gamma, 1]
+    pulled: Array = np.zeros((n, n + 2))  # K reach
     if m and s > 0:
         reach[:, :n] = terms.mobility
-        reach[:, n] = terms.actuation @ difference
-        reach[:, n + 1] = terms.actuation @ terms.pose_b + terms.drift
+        reach[:, n] = product(terms.actuation, difference)
+        reach[:, n + 1] = product(terms.actuation, terms.pose_b) + terms.drift
         Q = terms.actuation_square / weights.pose
         Q.flat[:: n + 1] += 1.0 / s
-        pulled = np.asarray(np.linalg.solve(Q, reach), dtype=np.float64)
-        square = reach.T @ pulled
+        try:
+            pulled = linear.solve(Q, reach)
+        except NotPositiveDefiniteError as error:  # it has numbers that are not finite
+            nothing = Solution(np.zeros(n + 1), False, 0, float("nan"), str(error))
+            return Answer(terms.pose_b, np.zeros((m, 3)), terms.blend, nothing)
+        square = product(reach.T, pulled)
         H += square[:-1, :-1]
         f += square[:-1, -1]
     _add_forces(H[:n, :n], f[:n], terms)
@@ -76,8 +82,8 @@ def _reduced(terms: Terms, solver: Solver, start: Array | None) -> Answer:
     f[n] -= terms.blend_weight * terms.blend
     solution, _, force, tail = solve_cone(terms, solver, H, f, start)
     blend = float(tail[0])
-    yielded = pulled[:, :n] @ force.ravel() + pulled[:, n] * blend + pulled[:, n + 1]
-    torque = terms.pose_b + blend * difference - terms.actuation.T @ yielded / weights.pose
+    yielded = product(pulled[:, :n], force.ravel()) + pulled[:, n] * blend + pulled[:, n + 1]
+    torque = terms.pose_b + blend * difference - product(yielded, terms.actuation) / weights.pose
     return Answer(torque, force, blend, solution)
 
 
@@ -89,13 +95,13 @@ def _full(terms: Terms, solver: Solver, start: Array | None) -> Answer:
     f = np.zeros(nu + n + 1)
     s = weights.contact_velocity * terms.period**2
     velocity = np.concatenate((terms.actuation, terms.mobility), axis=1)  # (3m, nu + 3m)
-    H[:-1, :-1] = s * (velocity.T @ velocity)
-    f[:-1] = s * (velocity.T @ terms.drift)
+    H[:-1, :-1] = s * product(velocity.T, velocity)
+    f[:-1] = s * product(terms.drift, velocity)
     H[:nu, :nu].flat[:: nu + 1] += weights.pose
     H[:nu, -1] = H[-1, :nu] = -weights.pose * difference
-    H[-1, -1] = weights.pose * (difference @ difference) + terms.blend_weight
+    H[-1, -1] = weights.pose * product(difference, difference) + terms.blend_weight
     f[:nu] -= weights.pose * terms.pose_b
-    f[-1] = weights.pose * (difference @ terms.pose_b) - terms.blend_weight * terms.blend
+    f[-1] = weights.pose * product(difference, terms.pose_b) - terms.blend_weight * terms.blend
     _add_forces(H[nu:-1, nu:-1], f[nu:-1], terms)
     solution, head, force, tail = solve_cone(terms, solver, H, f, start)
     return Answer(head, force, float(tail[0]), solution)

@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from rotctl.control.terms import Terms
+from rotctl.linear import product
 from rotctl.qp import Problem, Solution, Solver, without_rows
 from rotctl.rotations import Array
 
@@ -33,9 +34,9 @@ def solve_cone(
         spread = _edge_map(head, m, terms.friction)
         lower = np.concatenate((-limit, np.zeros(4 * m + 1)))
         upper = np.concatenate((limit, np.full(4 * m, np.inf), [1.0]))
-        problem = without_rows(spread.T @ H @ spread, f @ spread, lower, upper)
+        problem = without_rows(product(spread.T, H, spread), product(f, spread), lower, upper)
         solution = solver.solve(problem, start)
-        x = spread @ solution.x
+        x = product(spread, solution.x)
     else:
         normal = np.zeros(3 * m) - np.inf
         normal[::3] = 0.0

@@ -16,6 +16,7 @@ from rotctl.control.supervisor import RULES, Evidence
 from rotctl.control.targets import Desired, momentum_rates
 from rotctl.control.terms import Terms, collect
 from rotctl.errors import InputError
+from rotctl.linear import product
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.qp import Solution, Solver, make_solver
@@ -104,7 +105,7 @@ class Controller:
             used=used,
             force=force,
             rates_wanted=rates,
-            rates_predicted=outcome.terms.maps @ answer.force.ravel() + terms.weight,
+            rates_predicted=product(outcome.terms.maps, answer.force.ravel()) + terms.weight,
             status=POSE_ONLY if all_failed else min(failures, SOLVED_BY_FALLBACK),
             fallback=failures,
             iterations=iterations,
@@ -161,7 +162,7 @@ def _evidence(first: Answer, terms: Terms, state: State) -> Evidence:
     return Evidence(
         force=np.sqrt((first.force**2).sum(axis=1)),
         torque=np.sqrt((torque**2).sum(axis=1)),
-        separation=normal_rows @ state.velocity,
+        separation=product(normal_rows, state.velocity),
     )
 
 

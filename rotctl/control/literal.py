@@ -13,6 +13,7 @@ import numpy as np
 from rotctl.control.answer import Answer
 from rotctl.control.cone import friction_rows
 from rotctl.control.terms import Terms
+from rotctl.linear import product
 from rotctl.mechanics.model import ROOT_DOFS, Model
 from rotctl.mechanics.state import State
 from rotctl.qp import Problem, Solver
@@ -45,8 +46,8 @@ def assemble(terms: Terms, model: Model, state: State) -> Problem:
     H, f = np.zeros((n, n)), np.zeros(n)
     for objective in objectives(terms, model, state, M):
         weighted = objective.A.T * objective.W
-        H += weighted @ objective.A
-        f -= weighted @ objective.b
+        H += product(weighted, objective.A)
+        f -= product(weighted, objective.b)
     limit = terms.torque_limit
     normal = np.full(3 * m, -np.inf)
     normal[::3] = 0.0
@@ -90,7 +91,7 @@ def objectives(terms: Terms, model: Model, state: State, M: Array) -> list[Objec
         Objective(blend, terms.pose_b, np.full(nu, weights.pose)),  # E_B, eq. 7
         Objective(  # W_v term of eq. 2
             velocity,
-            terms.approach - terms.jacobian @ state.velocity,
+            terms.approach - product(terms.jacobian, state.velocity),
             np.full(3 * m, weights.contact_velocity),
         ),
         Objective(force, np.zeros(3 * m), np.full(3 * m, weights.contact_force)),
@@ -100,13 +101,13 @@ def objectives(terms: Terms, model: Model, state: State, M: Array) -> list[Objec
 
 def _momentum_matrix(state: State, M: Array) -> Array:
     """(6, nv) with [L; H] = matrix @ qdot: the root rows of M, carried to the centre of mass."""
-    return _to_com(state) @ M[:ROOT_DOFS]
+    return product(_to_com(state), M[:ROOT_DOFS])
 
 
 def _momentum_bias(model: Model, state: State) -> Array:
     """d(matrix)/dt qdot (6,): the root rows of C with gravity's part taken out."""
     gravity = np.concatenate((model.mass * model.gravity, np.zeros(3)))
-    return np.asarray(_to_com(state) @ state.bias[:ROOT_DOFS] + gravity)
+    return np.asarray(product(_to_com(state), state.bias[:ROOT_DOFS]) + gravity)
 
 
 def _to_com(state: State) -> Array:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotctl.control.settings import Gains
+from rotctl.linear import product
 from rotctl.mechanics.momentum import Momentum
 from rotctl.rotations import Array
 
@@ -35,8 +36,9 @@ def momentum_rates(desired: Desired, momentum: Momentum, mass: float, gains: Gai
         np.array(gains.linear_stiffness) * (desired.com - momentum.com)
         + np.array(gains.linear_damping) * (desired.com_velocity - momentum.com_velocity)
     )
-    angular = momentum.inertia @ (
+    angular = product(
+        momentum.inertia,
         np.array(gains.angular_stiffness) * desired.excursion_error
-        + np.array(gains.angular_damping) * (desired.angular_velocity - momentum.angular_velocity)
+        + np.array(gains.angular_damping) * (desired.angular_velocity - momentum.angular_velocity),
     )
     return np.concatenate((linear, angular))

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.control.settings import ControllerSettings, Weights
+from rotctl.linear import product
 from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import contact_momentum_maps
@@ -62,7 +63,7 @@ class Terms:
     @cached_property
     def mobility(self) -> Array:
         """A = J M^-1 J' (3m, 3m) [1/kg]."""
-        return np.asarray(self.solved @ self.jacobian.T)
+        return product(self.solved, self.jacobian.T)
 
     @cached_property
     def actuation(self) -> Array:
@@ -72,23 +73,25 @@ class Terms:
     @cached_property
     def actuation_square(self) -> Array:
         """B B' (3m, 3m)."""
-        return np.asarray(self.actuation @ self.actuation.T)
+        return product(self.actuation, self.actuation.T)
 
     @cached_property
     def momentum_square(self) -> Array:
         """Maps' W maps (3m, 3m)."""
-        return np.asarray((self.maps.T * self.momentum_weights) @ self.maps)
+        return product(self.maps.T * self.momentum_weights, self.maps)
 
     @cached_property
     def momentum_pull(self) -> Array:
         """Maps' W (wanted rates - gravity's) (3m,)."""
-        return np.asarray(self.maps.T @ (self.momentum_weights * (self.rates - self.weight)))
+        return product(self.momentum_weights * (self.rates - self.weight), self.maps)
 
     @property
     def blend_weight(self) -> float:
         """Weight on the squared change of gamma."""
         difference = self.pose_a - self.pose_b
-        return self.weights.blend * max(1.0, self.weights.pose * float(difference @ difference))
+        return self.weights.blend * max(
+            1.0, self.weights.pose * float(product(difference, difference))
+        )
 
     def subset(self, keep: NDArray[np.bool_]) -> "Terms":
         """The same step over the contacts where `keep` (m,) is True."""
@@ -152,5 +155,5 @@ def collect(
         maps=contact_momentum_maps(state.momentum, jacobian),
         weight=np.concatenate((model.mass * model.gravity, np.zeros(3))),
         approach=approach,
-        drift=jacobian @ (state.velocity / h - solved[-1]) - approach / h,
+        drift=product(jacobian, state.velocity / h - solved[-1]) - approach / h,
     )

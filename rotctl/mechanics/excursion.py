@@ -24,7 +24,7 @@ from typing import Literal
 
 import numpy as np
 
-from rotctl.rotations import Array, advance, cross, multiply, rotate, rotation_between
+from rotctl.rotations import Array, advance, cross, dot, multiply, rotate, rotation_between
 
 ExcursionName = Literal["oriented", "integral", "root"]
 
@@ -76,7 +76,7 @@ def integrate(
     return Excursion(
         angle=excursion.angle + turn,
         orientation=pulled,
-        phase=excursion.phase + float(rolling_axis @ turn),
+        phase=excursion.phase + dot(rolling_axis, turn),
     )
 
 
@@ -112,5 +112,5 @@ def error(excursion: Excursion, target: Array, rolling_axis: Array, name: Excurs
     if name == "integral":
         return difference
     carried = rotate(excursion.orientation, rolling_axis)
-    along = rolling_axis * (rolling_axis @ difference)
+    along = rolling_axis * dot(rolling_axis, difference)
     return np.asarray(rotation_between(carried, rolling_axis) + along)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from rotctl.linear import product, solve
 from rotctl.rotations import Array, cross
 
 
@@ -46,7 +47,7 @@ def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
     com = data.subtree_com[1].copy()
     offset = com - data.qpos[:3]
     linear = generalised[:3]
-    angular = rotation @ generalised[3:6] - cross(offset, linear)
+    angular = product(rotation, generalised[3:6]) - cross(offset, linear)
     xx, yy, zz, xy, xz, yz = data.crb[1, :6]
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return Momentum(
@@ -55,7 +56,7 @@ def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
         linear=linear,
         angular=angular,
         inertia=inertia,
-        angular_velocity=np.linalg.solve(inertia, angular),
+        angular_velocity=solve(inertia, angular),
         root_rotation=rotation,
         root_offset=offset,
     )
@@ -70,6 +71,6 @@ def contact_momentum_maps(momentum: Momentum, jacobian: Array) -> Array:
     root = jacobian[:, :6].T  # (6, 3m)
     force = root[:3]
     x, y, z = momentum.root_offset
-    about_root = momentum.root_rotation @ root[3:]
-    lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) @ force
+    about_root = product(momentum.root_rotation, root[3:])
+    lever = product(np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]), force)
     return np.concatenate((force, about_root - lever))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.mechanics.contacts import Contacts, read_contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum, read_momentum
@@ -45,7 +46,7 @@ class State:
     @property
     def root_angular_velocity(self) -> Array:
         """Of the root body (3,) [rad/s], world axes."""
-        return np.asarray(self.momentum.root_rotation @ self.velocity[3:6])
+        return product(self.momentum.root_rotation, self.velocity[3:6])
 
     def solve_mass(self, mj: mujoco.MjModel, rows: Array) -> Array:
         """Rows of right-hand sides (k, nv) to rows of M^-1 rhs (k, nv)."""

@@ -38,7 +38,7 @@ class PosePair:
 
     def at(self, phase: float) -> Array:
         """Both poses (2, nu) [rad] at a phase [rad]."""
-        poses = np.array([1.0, cos(phase), sin(phase)]) @ self.coefficients
+        poses = np.einsum("c,pcj->pj", [1.0, cos(phase), sin(phase)], self.coefficients)
         return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.linear import product
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip, joint_columns
 from rotctl.rotations import Array
@@ -95,7 +96,7 @@ def _fourier(harmonics: Sequence[float], phases: Array) -> Array:
     """Mean, cosine, sine, cosine of twice the phase, ... at phases (n,) [rad]."""
     turns = [n * phases for n in range(1, len(harmonics) // 2 + 1)]
     waves = [np.ones_like(phases), *(wave(turn) for turn in turns for wave in (np.cos, np.sin))]
-    return np.asarray(np.asarray(harmonics) @ np.array(waves[: len(harmonics)]))
+    return product(np.asarray(harmonics), np.array(waves[: len(harmonics)]))
 
 
 def periodic(samples: Array, places: Array) -> Array:

@@ -8,6 +8,7 @@ as the first bound; where none is met, the variable whose multiplier is most wro
 
 import numpy as np
 
+from rotctl.linear import NotPositiveDefiniteError, product, solve
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.qp.scaling import Scaled, scale
 from rotctl.rotations import Array
@@ -30,7 +31,7 @@ class ActiveSet:
         scaled = scale(problem)
         try:
             found = _descend(scaled, scaled.regularised(), scaled.start(start))
-        except np.linalg.LinAlgError as error:
+        except NotPositiveDefiniteError as error:
             return failed(problem, str(error))
         return scaled.solution(found)
 
@@ -41,10 +42,10 @@ def _descend(scaled: Scaled, H: Array, z: Array) -> Array:
     free = (z > lower) & (z < upper)
     slack = WRONG * (1.0 + float(np.abs(f).max()))
     for _ in range(STEPS * len(z)):
-        gradient = H @ z + f
+        gradient = product(H, z) + f
         direction = np.zeros(len(z))
         if free.any():
-            direction[free] = np.linalg.solve(H[np.ix_(free, free)], -gradient[free])
+            direction[free] = solve(H[np.ix_(free, free)], -gradient[free])
         ahead = np.where(direction < 0, lower, upper) - z
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = np.where(direction != 0, ahead / direction, np.inf)
@@ -55,7 +56,7 @@ def _descend(scaled: Scaled, H: Array, z: Array) -> Array:
             free[first] = False
             continue
         z = z + direction
-        gradient = H @ z + f
+        gradient = product(H, z) + f
         pull = np.where(z <= lower, -gradient, np.where(z >= upper, gradient, 0.0))
         pull[free] = 0.0
         worst = int(np.argmax(pull))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from rotctl.errors import InputError
+from rotctl.linear import product
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.rotations import Array
 
@@ -79,5 +80,5 @@ class AnySolver:
         x = answer.x
         primal = problem.violation(x) / (1.0 + float(np.abs(x).max(initial=0.0)))
         dual = answer.dual_residual() / (1.0 + float(np.abs(problem.f).max(initial=0.0)))
-        gap = answer.duality_gap() / (1.0 + abs(float(x @ problem.H @ x)))
+        gap = answer.duality_gap() / (1.0 + abs(float(product(x, problem.H, x))))
         return float(np.max([primal, dual, gap]))

@@ -5,6 +5,7 @@ from typing import Literal, Protocol
 
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.rotations import Array
 
 Shape = Literal["bounds", "rows"]
@@ -32,14 +33,12 @@ class Problem:
 
     def objective(self, x: Array) -> float:
         """Value of the cost at x (n,)."""
-        return float(0.5 * x @ self.H @ x + self.f @ x)
+        return float(0.5 * product(x, self.H, x) + product(self.f, x))
 
     def violation(self, x: Array) -> float:
         """Largest violation of a bound or row at x (n,), in the constraint's own unit."""
-        product = self.G @ x
-        gaps = np.concatenate(
-            (self.lower - x, x - self.upper, self.low - product, product - self.high)
-        )
+        rows = product(self.G, x)
+        gaps = np.concatenate((self.lower - x, x - self.upper, self.low - rows, rows - self.high))
         return float(gaps.max(initial=0.0))  # nan, not 0, if anything is nan
 
 

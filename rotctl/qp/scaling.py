@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.qp.problem import Problem, Solution
 from rotctl.rotations import Array
 
@@ -60,5 +61,5 @@ def scale(problem: Problem) -> Scaled:
 
 def natural_residual(H: Array, f: Array, lower: Array, upper: Array, z: Array) -> float:
     """Relative length of the projected gradient step from z; 0 at the solution."""
-    step = np.minimum(np.maximum(z - (H @ z + f), lower), upper) - z
+    step = np.minimum(np.maximum(z - (product(H, z) + f), lower), upper) - z
     return float(np.abs(step).max() / (1.0 + np.abs(z).max()))

@@ -16,6 +16,7 @@ overstepped is taken back a little, t = min(fastest, correction (depth - slop) /
 import mujoco
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.mechanics.contacts import Contacts, realised_forces
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
@@ -94,7 +95,7 @@ class LockstepStepper:
             chosen = self._settings
             impulses = self._solve(rows, chosen.sweeps, chosen.tolerance, chosen.friction_follow)
             data.efc_force[:] = impulses.p / h
-            velocity += impulses.p @ solved
+            velocity += product(impulses.p, solved)
             self.solved.append(impulses)
         data.qvel[:] = velocity
         mujoco.mj_integratePos(mj, data.qpos, data.qvel, h)
@@ -110,7 +111,7 @@ class LockstepStepper:
             normal[row] = row - tangent
             friction[row] = contact.friction[sliding, tangent - 1]
         target = np.where(normal == pgs.NO_NORMAL, self._targets(data), 0.0)
-        return Rows(jacobian @ solved.T, jacobian @ free - target, normal, friction)
+        return Rows(product(jacobian, solved.T), product(jacobian, free) - target, normal, friction)
 
     def _targets(self, data: mujoco.MjData) -> Array:
         """Slowest separation (n,) that each row may end the step with [m/s, rad/s]."""

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.linear import product
 from rotctl.mechanics.model import Model, is_character
 from rotctl.rotations import Array, advance, cross
 from rotctl.settings import STRICT, Finite, NonNegative, Range
@@ -137,7 +138,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, orientation: Array, p
     x, y, z = start.velocity
     velocity = np.array([x * np.cos(slope), y, z + x * np.sin(slope)])
     data.qvel[:3] = velocity + cross(start.angular_velocity, offset)
-    data.qvel[3:6] = data.xmat[1].reshape(3, 3).T @ start.angular_velocity
+    data.qvel[3:6] = product(start.angular_velocity, data.xmat[1].reshape(3, 3))
 
 
 def _clearance(model: Model, data: mujoco.MjData) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.linear import product
 from rotctl.mechanics.terrain.ground import FLOOR_DEPTH, add_geom
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, NonNegative, Positive
@@ -76,7 +77,7 @@ class Heightfield:
         i, j = int(v), int(u)
         b, a = v - i, u - j
         corner = self.heights[i : i + 2, j : j + 2]
-        return float(np.array([1 - b, b]) @ corner @ np.array([1 - a, a]))
+        return float(product(np.array([1 - b, b]), corner, np.array([1 - a, a])))
 
     def normal(self, x: float, y: float) -> Array:
         """See `Ground`; from differences over one cell."""
@@ -84,7 +85,7 @@ class Heightfield:
         slope_x = (self.height(x + h, y) - self.height(x - h, y)) / CELL
         slope_y = (self.height(x, y + h) - self.height(x, y - h)) / CELL
         normal = np.array([-slope_x, -slope_y, 1.0])
-        return np.asarray(normal / np.sqrt(normal @ normal))
+        return np.asarray(normal / np.sqrt(product(normal, normal)))
 
     def add(self, spec: mujoco.MjSpec) -> None:
         """See `Ground`."""
