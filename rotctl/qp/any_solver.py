@@ -4,6 +4,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rotctl.errors import InputError
 from rotctl.linear import product
@@ -46,18 +47,15 @@ class AnySolver:
         reason = objection(problem)
         if reason:
             return failed(problem, f"{self.name}: {reason}")
-        equal = problem.low == problem.high
-        above = ~equal & (problem.high < LARGEST)
-        below = ~equal & (problem.low > -LARGEST)
-        rows = np.concatenate((problem.G[above], -problem.G[below]))
-        limits = np.concatenate((problem.high[above], -problem.low[below]))
+        rows, limits, equal = _one_sided(problem)
+        fixed, value = problem.G[equal], problem.low[equal]
         stated = self._qpsolvers.Problem(
             problem.H,
             problem.f,
             rows if len(rows) else None,
             limits if len(rows) else None,
-            problem.G[equal] if equal.any() else None,
-            problem.low[equal] if equal.any() else None,
+            fixed if len(fixed) else None,
+            value if len(fixed) else None,
             problem.lower,
             problem.upper,
         )
@@ -69,16 +67,41 @@ class AnySolver:
             return failed(problem, f"{self.name}: {error}")
         if not answer.found or answer.x is None or not np.isfinite(answer.x).all():
             return failed(problem, f"{self.name} found no solution")
-        residual = self._residual(problem, answer)
+        residual = _residual(problem, answer)
         if not residual <= TOLERANCE:
             return failed(problem, f"{self.name}: residual {residual:.1e} exceeds {TOLERANCE:.0e}")
         return Solution(answer.x, True, 0, residual)
 
-    @staticmethod
-    def _residual(problem: Problem, answer: Any) -> float:
-        """Largest of the primal and dual residuals and the duality gap, all relative."""
-        x = answer.x
-        primal = problem.violation(x) / (1.0 + float(np.abs(x).max(initial=0.0)))
-        dual = answer.dual_residual() / (1.0 + float(np.abs(problem.f).max(initial=0.0)))
-        gap = answer.duality_gap() / (1.0 + abs(float(product(x, problem.H, x))))
-        return float(np.max([primal, dual, gap]))
+
+def _one_sided(problem: Problem) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Rows G and limits h with G x <= h, and which of the problem's rows (k,) are equalities."""
+    equal = problem.low == problem.high
+    above = ~equal & (problem.high < LARGEST)
+    below = ~equal & (problem.low > -LARGEST)
+    rows = np.concatenate((problem.G[above], -problem.G[below]))
+    return rows, np.concatenate((problem.high[above], -problem.low[below])), equal
+
+
+def _residual(problem: Problem, answer: Any) -> float:
+    """Largest of the primal and dual residuals and the duality gap, all relative.
+
+    qpsolvers could say them itself, by BLAS.
+    """
+    x, box = answer.x, answer.z_box
+    rows, limits, equal = _one_sided(problem)
+    sides = [(rows, limits, answer.z), (problem.G[equal], problem.low[equal], answer.y)]
+    sides = [side for side in sides if len(side[1])]
+    if box is None or any(pressure is None for *_, pressure in sides):
+        return np.inf
+    bound = np.where(box < 0, problem.lower, problem.upper)
+    there = np.isfinite(bound)
+    curve = product(problem.H, x)
+    gradient = curve + problem.f + box
+    gap = product(x, curve) + product(problem.f, x) + product(box[there], bound[there])
+    for block, limit, pressure in sides:
+        gradient = gradient + product(pressure, block)
+        gap = gap + product(pressure, limit)
+    primal = problem.violation(x) / (1.0 + float(np.abs(x).max(initial=0.0)))
+    dual = float(np.abs(gradient).max()) / (1.0 + float(np.abs(problem.f).max(initial=0.0)))
+    apart = abs(float(gap)) / (1.0 + abs(float(product(x, curve))))
+    return float(np.max([primal, dual, apart]))
