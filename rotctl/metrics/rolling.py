@@ -85,7 +85,7 @@ def measure(
     # A run that ends before it settled has no mean speeds.
     elapsed = (steps - 1 - first) * period or math.nan
     axis = np.asarray(log["trajectory/trunk_axis"], dtype=float)[-round(1.0 / period) :]
-    heading = np.degrees(np.arctan2(-axis[:, 0], axis[:, 1]))
+    heading = np.degrees([math.atan2(-x, y) for x, y, _ in axis.tolist()])
     stall, stalled_at = longest_stall(direction * angle, criteria.stall_progress, period)
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
     return RollingMetrics(
@@ -106,7 +106,7 @@ def measure(
 def _median_angle(degrees: NDArray[np.float64]) -> float:
     """Median about the mean direction, in (-180, 180]: +179 and -179 do not make 0."""
     turn = np.radians(degrees)
-    centre = np.degrees(np.arctan2(np.sin(turn).sum(), np.cos(turn).sum()))
+    centre = math.degrees(math.atan2(np.sin(turn).sum(), np.cos(turn).sum()))
     median = centre + np.median((degrees - centre + 180.0) % 360.0 - 180.0)
     return float(180.0 - (180.0 - median) % 360.0)
 
