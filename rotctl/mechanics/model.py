@@ -5,6 +5,7 @@ things on the ground, if there are any. MuJoCo's arrays are of the whole world; 
 is block diagonal in the two, so that control can work on full vectors and leave the rest at 0.
 """
 
+import re
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -28,7 +29,7 @@ class Model:
 
     Attributes:
         mj: the MuJoCo model.
-        mjcf: the same model as self-contained text.
+        mjcf: the self-contained text that it was compiled from.
         joint_names: actuated joints in motor order.
         joints: the actuated joints' degrees of freedom, in motor order.
         angles: their entries in `qpos`.
@@ -98,7 +99,7 @@ def build(
         added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
         add_character(spec, replace(character, joint_armature=character.joint_armature + added))
         ground.add(spec)
-        mj = spec.compile()
+        mj, mjcf = _compiled(spec)
     except ValueError as error:
         reason = str(error).strip().splitlines()[0]
         raise InputError(
@@ -113,7 +114,7 @@ def build(
     joints = slice(ROOT_DOFS, ROOT_DOFS + mj.nu)
     return Model(
         mj=mj,
-        mjcf=spec.to_xml(),
+        mjcf=mjcf,
         joint_names=tuple(mj.joint(int(j)).name for j in hinges),
         joints=joints,
         angles=slice(joints.start + 1, joints.stop + 1),  # the root's quaternion has one more
@@ -130,6 +131,18 @@ def build(
         look_ahead=1.0 / control_rate if physics.closing else 0.0,
         ground=ground,
     )
+
+
+def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, str]:
+    """The model, and the text that says all of it.
+
+    MuJoCo writes six digits a number. So the model is the one that the text describes, and not
+    the other way round. The step alone is written in full, as 1/240 s has no six digits.
+    """
+    spec.compile()
+    step = f'timestep="{float(spec.option.timestep)!r}"'  # left out if it is MuJoCo's own
+    text = re.sub(r'timestep="[^"]*"', step, spec.to_xml(), count=1)
+    return mujoco.MjModel.from_xml_string(text), text
 
 
 def _check(mj: mujoco.MjModel, character: Character) -> None:
