@@ -1,17 +1,37 @@
 """Where a result comes from: versions, source commit and machine. No host or user name."""
 
+import ctypes
+import math
 import os
 import platform
 import subprocess
 from functools import cache
+from hashlib import sha256
 from importlib import metadata
 from pathlib import Path
+from struct import pack
 from typing import Any
+
+import numpy as np
 
 import rotctl
 
 _PACKAGES = ("mujoco", "numpy", "osqp", "h5py")
 _GIT_TIMEOUT = 10.0  # [s]
+_CPUINFO = Path("/proc/cpuinfo")
+# Those that mathematical libraries choose their code by.
+_FEATURES = (
+    "avx",
+    "avx2",
+    "fma",
+    "fma4",
+    "avx512f",
+    "avx512vl",
+    "avx512_fp16",
+    "amx_tile",
+    "asimd",
+)
+_LIBM_POINTS = 4096  # in each function some of them are rounded another way without FMA
 
 
 def collect() -> dict[str, Any]:
@@ -43,17 +63,56 @@ def _machine() -> dict[str, str | int]:
     return {
         "platform": platform.platform(),
         "cpu": _cpu_model(),
+        "features": _cpu_features(),
         "cores": os.cpu_count() or 0,
+        "libc": " ".join(platform.libc_ver()).strip() or "unknown",
+        "libm": libm(),
+        "blas": _blas(),
     }
 
 
-def _cpu_model(cpuinfo: Path = Path("/proc/cpuinfo")) -> str:
+def _cpu_model(cpuinfo: Path = _CPUINFO) -> str:
+    return _cpu_line("model name", cpuinfo) or platform.processor() or "unknown"
+
+
+def _cpu_features(cpuinfo: Path = _CPUINFO) -> str:
+    there = (_cpu_line("flags", cpuinfo) or _cpu_line("Features", cpuinfo)).split()
+    return " ".join(name for name in _FEATURES if name in there) or "unknown"
+
+
+def _cpu_line(key: str, cpuinfo: Path) -> str:
+    """What is said of the first processor; empty where nothing is."""
     try:
         lines = cpuinfo.read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError:
         lines = []
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor() or "unknown"
+    named = (line.partition(":") for line in lines)
+    return next((value.strip() for name, _, value in named if name.strip() == key), "")
+
+
+def libm() -> str:
+    """Eight digits that tell C libraries apart whose sin, cos and atan2 differ in any bit.
+
+    Nothing else that a run calls still depends on the machine, see docs/reproducibility.md.
+    """
+    points = [0.61803398875 * i for i in range(1, _LIBM_POINTS + 1)]
+    values = [function(x) for function in (math.sin, math.cos) for x in points]
+    values += map(math.atan2, points, reversed(points))
+    return sha256(pack(f"<{len(values)}d", *values)).hexdigest()[:8]
+
+
+def _blas() -> str:
+    """The BLAS that numpy brings, its version and, of an OpenBLAS, the kernel it took here."""
+    build: dict[str, Any] = np.show_config(mode="dicts")  # type: ignore[assignment]
+    found = build.get("Build Dependencies", {}).get("blas", {})
+    words = [str(found.get("name", "unknown")), str(found.get("version", ""))]
+    for path in (Path(np.__file__).parent.parent / "numpy.libs").glob("*openblas*"):
+        library = ctypes.CDLL(str(path))  # numpy has loaded it, this only finds it again
+        for name in ("scipy_openblas_get_corename64_", "scipy_openblas_get_corename"):
+            if function := getattr(library, name, None):
+                function.restype = ctypes.c_char_p
+                words.append(function().decode())
+    return " ".join(filter(None, words))
 
 
 @cache
