@@ -1,0 +1,46 @@
+"""A process of its own: runs configs, and prints what all they made comes down to."""
+
+import hashlib
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+from rotctl.config import check
+from rotctl.control import compiled
+from rotctl.log import collect
+from rotctl.run import in_memory, summarise
+from rotctl.scenario import build
+from rotctl.simulation import pgs
+
+
+def digest(config):
+    """SHA-256 of every array of a run and of its summary row, and the fallbacks it took."""
+    scenario = build(config)
+    buffer, breakdown = in_memory(scenario)
+    arrays = buffer.arrays()
+    summary = summarise(scenario, buffer, breakdown, wall=1.0)
+    assert not breakdown, breakdown
+    content = hashlib.sha256(scenario.model.mjcf.encode())
+    for name in sorted(arrays):
+        content.update(name.encode() + arrays[name].tobytes())
+    content.update(json.dumps(summary | {"real_time_factor": 0}).encode())
+    return content.hexdigest(), int(arrays["solver/fallback"].sum())
+
+
+def main():
+    """From stdin: what to run, for how long [s], and the libraries to use, if not those built."""
+    order = json.load(sys.stdin)
+    if order["libraries"]:
+        compiled.LIBRARY, pgs.LIBRARY = map(Path, order["libraries"])
+        assert compiled.library()
+        assert pgs.library()
+    runs = {
+        name: digest(replace(check(config), duration=order["duration"]))
+        for name, config in order["configs"].items()
+    }
+    json.dump({"blas": collect()["machine"]["blas"], "runs": runs}, sys.stdout)
+
+
+if __name__ == "__main__":
+    main()
