@@ -14,7 +14,11 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SOURCES = (Path("rotctl/control/compiled.c"), Path("rotctl/simulation/pgs.c"))
+SOURCES = (
+    Path("rotctl/control/compiled.c"),
+    Path("rotctl/simulation/ground_forces.c"),
+    Path("rotctl/simulation/pgs.c"),
+)
 SLOWER = "rotctl will use its numpy reference instead, which is a few times slower"
 # Sums keep their order and products are rounded before they are added: with that, every compiler
 # and every level of optimisation gives the same bits.

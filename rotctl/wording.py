@@ -45,11 +45,9 @@ def readable(summary: dict[str, Any]) -> str:
 
 def described(log: "RunLog") -> str:
     """What is in a log: datasets, outcome, provenance, events."""
-    from rotctl.log import SCHEMA
-
     attributes = log.attributes
     lines = [f"{log.path}  run {attributes['run_id']}  schema {attributes['schema_version']}", ""]
-    for name in SCHEMA:
+    for name in log.names:
         shape = " x ".join(map(str, log[name].shape)) or "scalar"
         lines.append(f"{name:44} {shape:>16}  [{log.units(name)}]  {log.description(name)}")
     lines += ["", "outcome"]

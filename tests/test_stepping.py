@@ -72,19 +72,32 @@ def test_the_torque_is_held(model, substeps, supported):
     assert np.abs(ends[1] - ends[0]).max() > 0.1
 
 
-def test_forces_are_those_of_the_first_substep(model, substeps, supported):
-    step = supported[0]
-    stepper, data, plain = MujocoStepper(model, substeps), fresh(model, step), fresh(model, step)
-    found = one_period(model, stepper, data, step.decision.torque)
-    plain.ctrl[:] = step.decision.torque
-    mujoco.mj_forward(model.mj, plain)
-    expected = []
-    for i, contact in enumerate(plain.contact):
-        if (model.mj.geom_bodyid[contact.geom] == 0).any():
-            local = np.empty(6)
-            mujoco.mj_contactForce(model.mj, plain, i, local)
-            expected.append(contact.frame.reshape(3, 3).T @ local[:3])
-    assert np.abs(found - expected).max() < 1e-6 * (1 + np.abs(expected).max())
+def test_forces_are_means_over_the_substeps(model, substeps, supported):
+    """As MuJoCo itself reads them, body by body, from steps that it makes alone."""
+    for step in supported[::20]:
+        stepper, data, plain = (
+            MujocoStepper(model, substeps),
+            fresh(model, step),
+            fresh(model, step),
+        )
+        found = one_period(model, stepper, data, step.decision.torque)
+        plain.ctrl[:] = step.decision.torque
+        each, deepest = np.zeros((substeps, model.mj.nbody, 3)), 0.0
+        for k in range(substeps):
+            mujoco.mj_step(model.mj, plain)
+            for i, contact in enumerate(plain.contact):
+                bodies = model.mj.geom_bodyid[contact.geom]
+                if (bodies == 0).any():
+                    local = np.empty(6)
+                    mujoco.mj_contactForce(model.mj, plain, i, local)
+                    each[k, bodies.max()] += contact.frame.reshape(3, 3).T @ local[:3]
+                    deepest = max(deepest, -contact.dist)
+        for body, mean in enumerate(each.mean(axis=0)):
+            assert found.mean[found.body == body].sum(axis=0) == pytest.approx(mean, abs=1e-8)
+        assert found.total == pytest.approx(each.mean(axis=0).sum(axis=0), abs=1e-8)
+        largest = np.sqrt((each.sum(axis=1) ** 2).sum(axis=1)).max()
+        assert found.total_peak == pytest.approx(largest, abs=1e-8)
+        assert found.penetration == deepest > 0.0
 
 
 def test_no_complaint_at_the_start(model, substeps, supported):

@@ -130,9 +130,10 @@ def roll(scenario: Scenario) -> Split:
         decision = controller.decide(state, behaviour.desired(state, now), blend)
         t3 = time.perf_counter()
         blend = decision.blend
-        realised = stepper.advance(data, decision.torque, state.contacts)
+        forces = stepper.advance(data, decision.torque, state.contacts)
         t4 = time.perf_counter()
-        record(buffer, i, state, now, behaviour, decision, realised)
+        x, y, _ = state.momentum.com.tolist()
+        record(buffer, i, state, now, behaviour, decision, forces, model.ground.height(x, y))
         t5 = time.perf_counter()
         solve = clock.seconds - before
         seconds["physics"] += (t1 - t0) + (t4 - t3)

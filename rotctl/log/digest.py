@@ -19,14 +19,14 @@ def content_sha256(
     """Hashes all datasets in schema order (the model included), then all root attributes.
 
     Args:
-        arrays: schema path -> array, complete.
+        arrays: schema path -> array, all that a log of this version has.
         attributes: root attribute -> value; ``content_sha256`` and ``complete`` are left out.
 
     Returns:
         64 hexadecimal digits.
     """
     digest = sha256()
-    for name in SCHEMA:
+    for name in filter(arrays.__contains__, SCHEMA):
         array = np.asarray(arrays[name])
         digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
         digest.update(array.tobytes())

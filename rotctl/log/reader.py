@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rotctl.errors import LogError
 from rotctl.log import untrusted
 from rotctl.log.digest import content_sha256
-from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout
+from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
 
 
 def read_attributes(path: str | Path) -> dict[str, bool | int | float | str]:
@@ -53,7 +53,8 @@ class RunLog:
         with untrusted.opened(path) as file:
             attributes = untrusted.root_attributes(file)
             datasets = untrusted.datasets(file)
-            sizes = check_layout({name: (d.dtype, d.shape) for name, d in datasets.items()})
+            layout = {name: (d.dtype, d.shape) for name, d in datasets.items()}
+            sizes = check_layout(layout, int(attributes["schema_version"]))
             for name, dataset in datasets.items():
                 _check_unit(name, dataset)
         return cls(path, attributes, sizes)
@@ -67,6 +68,15 @@ class RunLog:
         self._require_name(name)
         with untrusted.opened(self.path) as file:
             return self._read(file, name)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is such a dataset; logs of older schema versions have fewer."""
+        return name in self.names
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Its datasets, in the order of the schema."""
+        return names_of(int(self.attributes["schema_version"]))
 
     @property
     def steps(self) -> int:
@@ -129,7 +139,7 @@ class RunLog:
             LogError: the file is damaged.
         """
         with untrusted.opened(self.path) as file:
-            arrays = {name: self._read(file, name) for name in SCHEMA}
+            arrays = {name: self._read(file, name) for name in self.names}
         found = content_sha256(arrays, self.attributes)
         if found != self.attributes["content_sha256"]:
             raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
@@ -140,8 +150,10 @@ class RunLog:
         return np.asarray(dataset[()])
 
     def _require_name(self, name: str) -> None:
-        if name not in SCHEMA:
-            raise LogError(f"{self.path}: no dataset {name!r}; valid names: {', '.join(SCHEMA)}")
+        if name not in self.names:
+            raise LogError(
+                f"{self.path}: no dataset {name!r}; valid names: {', '.join(self.names)}"
+            )
 
     def _text(self, encoded: bytes) -> str:
         try:

@@ -13,7 +13,8 @@ import numpy as np
 
 from rotctl.errors import LogError
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
+OLDEST_READ = 2
 
 MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
@@ -33,6 +34,7 @@ class DatasetSpec:
         unit: SI unit; ``"1"`` where there is none.
         description: one line for the reader of the file.
         fill: value of the rows and slots that nobody has written.
+        since: schema version that brought it.
     """
 
     dtype: str
@@ -40,10 +42,13 @@ class DatasetSpec:
     unit: str
     description: str
     fill: int = 0
+    since: int = OLDEST_READ
 
 
-def _per_step(unit: str, description: str, *row: str | int) -> DatasetSpec:
-    return DatasetSpec("<f8", ("steps", *row), unit, description)
+def _per_step(
+    unit: str, description: str, *row: str | int, since: int = OLDEST_READ
+) -> DatasetSpec:
+    return DatasetSpec("<f8", ("steps", *row), unit, description, since=since)
 
 
 def _per_contact(unit: str, description: str) -> DatasetSpec:
@@ -58,6 +63,9 @@ SCHEMA: dict[str, DatasetSpec] = {
     "trajectory/qvel": _per_step("m/s, rad/s", "generalised velocities, MuJoCo order", "nv"),
     "trajectory/ctrl": _per_step("N m", "joint torques held from this row's time on", "nu"),
     "trajectory/com": _per_step("m", "centre of mass", 3),
+    "trajectory/ground_height": _per_step(
+        "m", "height of the ground below the centre of mass", since=3
+    ),
     "trajectory/com_velocity": _per_step("m/s", "velocity of the centre of mass", 3),
     "trajectory/linear_momentum": _per_step("kg m/s", "linear momentum L", 3),
     "trajectory/angular_momentum": _per_step(
@@ -81,16 +89,35 @@ SCHEMA: dict[str, DatasetSpec] = {
     "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
     "trajectory/trunk_axis": _per_step("1", "the trunk's mean axis that it rolls about, unit", 3),
     "contacts/count": DatasetSpec(
-        "<i4", ("steps",), "1", "all contacts with the ground; may exceed the recorded capacity"
+        "<i4", ("steps",), "1", "contacts that the controller saw; may exceed the recorded capacity"
     ),
-    "contacts/body": DatasetSpec("<i4", _SLOTS, "1", "MuJoCo body id, -1 where empty", fill=-1),
-    "contacts/position": _per_contact("m", "contact point"),
+    "contacts/body": DatasetSpec(
+        "<i4",
+        _SLOTS,
+        "1",
+        "MuJoCo body id, -1 where empty; after the contacts that the controller saw, those that "
+        "came within the control step (schema 2: none)",
+        fill=-1,
+    ),
+    "contacts/position": _per_contact("m", "contact point, where the contact begins"),
     "contacts/normal": _per_contact("1", "contact normal, out of the ground, unit vector"),
     "contacts/force_predicted": _per_contact("N", "contact force in the controller's solution"),
     "contacts/force_realised": _per_contact(
-        "N", "contact force in the first physics step of the control step"
+        "N", "mean contact force over the control step (schema 2: in its first physics step)"
+    ),
+    "contacts/force_peak": DatasetSpec(
+        "<f4", _SLOTS, "N", "largest contact force in a physics step of the control step", since=3
     ),
     "contacts/used": DatasetSpec("?", _SLOTS, "1", "contact kept by the supervisor"),
+    "contacts/ground_force": _per_step(
+        "N", "mean over the control step of the ground's whole force on the character", 3, since=3
+    ),
+    "contacts/ground_force_peak": _per_step(
+        "N", "largest whole ground force in a physics step of the control step", since=3
+    ),
+    "contacts/penetration": _per_step(
+        "m", "deepest overlap with the ground in a physics step of the control step", since=3
+    ),
     "solver/status": DatasetSpec(
         "i1",
         ("steps",),
@@ -165,13 +192,20 @@ def check_dataset(
     return bound
 
 
+def names_of(version: int) -> tuple[str, ...]:
+    """The datasets that a log of that schema version has, in the order of ``SCHEMA``."""
+    return tuple(name for name, spec in SCHEMA.items() if spec.since <= version)
+
+
 def check_layout(
     layout: Mapping[str, tuple["np.dtype[Any]", tuple[int, ...] | None]],
+    version: int = SCHEMA_VERSION,
 ) -> dict[str, int]:
     """Checks the datasets of a whole log, from types and shapes alone.
 
     Args:
         layout: name -> (type, shape).
+        version: of the log's schema.
 
     Returns:
         Symbolic dimension -> size.
@@ -179,12 +213,13 @@ def check_layout(
     Raises:
         LogError: a dataset is missing, unknown, misshapen, or the log is absurdly large.
     """
+    names = names_of(version)
     for name in layout:
-        if name not in SCHEMA:
+        if name not in names:
             raise LogError(f"unknown dataset {name!r}")
     sizes: dict[str, int] = {}
     total = 0
-    for name in SCHEMA:
+    for name in names:
         if name not in layout:
             raise LogError(f"missing dataset {name!r}")
         dtype, shape = layout[name]

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from rotctl.errors import LogError
-from rotctl.log.schema import ATTRIBUTES, GROUPS, MAX_TOTAL_BYTES, SCHEMA_VERSION
+from rotctl.log.schema import ATTRIBUTES, GROUPS, MAX_TOTAL_BYTES, OLDEST_READ, SCHEMA_VERSION
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 
@@ -57,8 +57,10 @@ def root_attributes(file: h5py.File) -> dict[str, bool | int | float | str]:
     version = attribute(file, "schema_version")
     if type(version) is not int:
         raise LogError("not a rotctl log (schema_version is not a number)")
-    if version != SCHEMA_VERSION:
-        raise LogError(f"schema version {version}, this rotctl reads {SCHEMA_VERSION}")
+    if not OLDEST_READ <= version <= SCHEMA_VERSION:
+        raise LogError(
+            f"schema version {version}, this rotctl reads {OLDEST_READ} to {SCHEMA_VERSION}"
+        )
     if "complete" not in file.attrs or attribute(file, "complete") is not True:
         raise LogError("incomplete, the run was cut off while it was written")
     for name in file.attrs:

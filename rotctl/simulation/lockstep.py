@@ -17,11 +17,12 @@ import mujoco
 import numpy as np
 
 from rotctl.linear import product
-from rotctl.mechanics.contacts import Contacts, realised_forces
+from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.rotations import Array
 from rotctl.simulation import pgs
+from rotctl.simulation.ground_forces import GroundForces, ground_forces
 from rotctl.simulation.pgs import Impulses, Rows, Solve
 from rotctl.simulation.stepping import trouble
 
@@ -46,6 +47,7 @@ class LockstepStepper:
         """Step `model`, which was built with the same settings."""
         self._mj = model.mj
         self._settings = settings
+        self._forces = ground_forces(model.mj)
         self._periods = 0
         wanted = settings.backend == "compiled"
         compiled = wanted and pgs.library() is not None
@@ -58,17 +60,19 @@ class LockstepStepper:
         """Positions, contacts, rows and bias."""
         mujoco.mj_step1(self._mj, data)
 
-    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> Array:
+    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> GroundForces:
         """One control period, from the state that `evaluate` saw."""
         data.ctrl[:] = torque
         self.solved.clear()
+        self._forces.begin(contacts)
         self._step(data)
-        force = realised_forces(self._mj, data, contacts)
+        self._forces.add(data)
         for _ in range(self._settings.substeps - 1):
             self.evaluate(data)
             self._step(data)
+            self._forces.add(data)
         self._periods += 1
-        return force
+        return self._forces.result()
 
     def remark(self) -> str:
         """That the solver stopped far from a solution, if it did."""

@@ -13,6 +13,7 @@ from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
+from rotctl.simulation.ground_forces import GroundForces
 from rotctl.simulation.start import Start, place
 from rotctl.simulation.stepping import Stepper
 
@@ -116,8 +117,9 @@ def simulate(
         if decision.reasons:
             last_fallback = decision.reasons[-1]
             buffer.add_event(state.time, last_fallback)
-        realised = stepper.advance(data, decision.torque, state.contacts)
-        record(buffer, i, state, now, behaviour, decision, realised)
+        forces = stepper.advance(data, decision.torque, state.contacts)
+        x, y, _ = state.momentum.com.tolist()
+        record(buffer, i, state, now, behaviour, decision, forces, model.ground.height(x, y))
         progress()
         remark = stepper.remark()
         if remark:
@@ -135,15 +137,22 @@ def record(
     now: Excursion,
     behaviour: Behaviour,
     decision: Decision,
-    realised: Array,
+    forces: GroundForces,
+    ground_height: float,
 ) -> None:
-    """Write row `i` of the log; `realised` (m, 3) are the forces the physics gave [N]."""
+    """Write row `i` of the log.
+
+    Args:
+        forces: what the physics gave in this control step.
+        ground_height: below the centre of mass [m].
+    """
     trajectory, momentum = buffer.trajectory, state.momentum
     trajectory.time[i] = state.time
     trajectory.qpos[i] = state.position
     trajectory.qvel[i] = state.velocity
     trajectory.ctrl[i] = decision.torque
     trajectory.com[i] = momentum.com
+    trajectory.ground_height[i] = ground_height
     trajectory.com_velocity[i] = momentum.com_velocity
     trajectory.linear_momentum[i] = momentum.linear
     trajectory.angular_momentum[i] = momentum.angular
@@ -156,16 +165,19 @@ def record(
     trajectory.blend[i] = decision.blend
     trajectory.phase[i] = behaviour.phase(now)
     trajectory.trunk_axis[i] = behaviour.trunk_axis(state)
-    found = state.contacts
-    m = min(found.count, buffer.contacts.body.shape[1])
-    contacts = buffer.contacts
-    contacts.count[i] = found.count
-    contacts.body[i, :m] = found.body[:m]
-    contacts.position[i, :m] = found.position[:m]
-    contacts.normal[i, :m] = found.frame[:m, 0]
+    contacts, capacity = buffer.contacts, buffer.contacts.body.shape[1]
+    m, k = min(state.contacts.count, capacity), min(len(forces.body), capacity)
+    contacts.count[i] = state.contacts.count
+    contacts.body[i, :k] = forces.body[:k]
+    contacts.position[i, :k] = forces.position[:k]
+    contacts.normal[i, :k] = forces.normal[:k]
     contacts.force_predicted[i, :m] = decision.force[:m]
-    contacts.force_realised[i, :m] = realised[:m]
+    contacts.force_realised[i, :k] = forces.mean[:k]
+    contacts.force_peak[i, :k] = forces.peak[:k]
     contacts.used[i, :m] = decision.used[:m]
+    contacts.ground_force[i] = forces.total
+    contacts.ground_force_peak[i] = forces.total_peak
+    contacts.penetration[i] = forces.penetration
     solver = buffer.solver
     solver.status[i] = decision.status
     solver.iterations[i] = decision.iterations

@@ -5,9 +5,10 @@ from typing import Protocol
 import mujoco
 import numpy as np
 
-from rotctl.mechanics.contacts import Contacts, realised_forces
+from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array
+from rotctl.simulation.ground_forces import GroundForces, ground_forces
 
 WARNINGS = {
     mujoco.mjtWarning.mjWARN_INERTIA: "nearly singular inertia matrix",
@@ -35,12 +36,8 @@ class Stepper(Protocol):
         """Bring positions, contacts and bias up to date with the state in `data`."""
         ...
 
-    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> Array:
-        """Hold `torque` (nu,) [N m] for one control period.
-
-        Returns:
-            The forces (m, 3) [N], world axes, that the first step gave `contacts`.
-        """
+    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> GroundForces:
+        """Hold `torque` (nu,) [N m] for one control period that begins with these contacts."""
         ...
 
     def remark(self) -> str:
@@ -63,21 +60,24 @@ class MujocoStepper:
         self._mj = model.mj
         self._substeps = substeps
         self._period = substeps * model.mj.opt.timestep
+        self._forces = ground_forces(model.mj)
         self._steps = 0
 
     def evaluate(self, data: mujoco.MjData) -> None:
         """First half of a step, which needs no torque."""
         mujoco.mj_step1(self._mj, data)
 
-    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> Array:
+    def advance(self, data: mujoco.MjData, torque: Array, contacts: Contacts) -> GroundForces:
         """Second half of the step begun by `evaluate`, then the other substeps."""
         data.ctrl[:] = torque
+        self._forces.begin(contacts)
         mujoco.mj_step2(self._mj, data)
-        force = realised_forces(self._mj, data, contacts)
-        if self._substeps > 1:
-            mujoco.mj_step(self._mj, data, self._substeps - 1)
+        self._forces.add(data)
+        for _ in range(self._substeps - 1):
+            mujoco.mj_step(self._mj, data)
+            self._forces.add(data)
         self._steps += 1
-        return force
+        return self._forces.result()
 
     def remark(self) -> str:
         """Nothing: MuJoCo's solver falls short in silence."""
