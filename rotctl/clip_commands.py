@@ -75,11 +75,11 @@ def _model(character: str) -> "Model":
 
 def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     """Write a clip; returns where it is."""
+    from rotctl import files
     from rotctl.motion.writing import text
-    from rotctl.report.files import replace
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
-    replace(out, text(clip).encode())
+    files.replace(out, text(clip).encode())
     return out
 
 

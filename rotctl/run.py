@@ -5,7 +5,7 @@ import math
 import os
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,8 +13,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from rotctl import files
 from rotctl.config import Config, to_yaml
-from rotctl.errors import InputError, LogError
+from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
 from rotctl.mechanics.excursion import Excursion
 from rotctl.mechanics.state import State
@@ -80,7 +81,7 @@ def run(
             return Result(folder, log.outcome, already_there=True)
         except LogError as error:
             replaced = str(error)
-    with _writable(folder):
+    with files.folder(folder, linked=False):
         made = _simulated(scenario, progress)
         publish(made, folder)
     notices = (scenario.controller.notice, scenario.stepper.notice)
@@ -116,12 +117,9 @@ def publish(made: Made, folder: Path) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot write {folder}: {error.strerror}") from None
-    write_log(folder / LOG_NAME, made.log)
-    _write_summary(folder / SUMMARY_NAME, made.summary)
+    with files.folder(folder, linked=False):
+        write_log(folder / LOG_NAME, made.log)
+        _write_summary(folder / SUMMARY_NAME, made.summary)
 
 
 def _built(config: Config) -> Scenario:
@@ -252,29 +250,5 @@ def _mujoco_warnings() -> Iterator[list[str]]:
         mujoco.set_mju_user_warning(before)
 
 
-@contextmanager
-def _writable(folder: Path) -> Iterator[None]:
-    """Make `folder` before the work starts; no empty one stays behind if that fails."""
-    try:  # from before it is made: an interrupt may come right after
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"cannot write {folder}: {error.strerror}") from None
-        if not os.access(folder, os.W_OK):
-            raise InputError(f"cannot write {folder}: no permission, or read-only")
-        yield
-    except BaseException:
-        with suppress(OSError):  # it is not empty: an earlier run is in it
-            folder.rmdir()
-        raise
-
-
 def _write_summary(path: Path, summary: Summary) -> None:
-    part = path.with_suffix(".part")
-    try:
-        part.write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-        os.replace(part, path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+    files.replace(path, f"{json.dumps(summary, indent=2)}\n".encode())

@@ -203,7 +203,13 @@ def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path):
     assert (finished.returncode, finished.stdout) == (2, "")
     assert finished.stderr.startswith(f"rotctl: cannot write {tmp_path / 'out'}/")
     assert finished.stderr.endswith("/run.h5: File too large\n")
-    assert os.listdir(tmp_path / "out") == []
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("override", ["duration=1e-9", "controller.solver=qpsolvers:no"])
+def test_a_config_that_makes_no_run_leaves_no_folder(cli, tmp_path, override):
+    assert cli("run", override, "--out", tmp_path / "a" / "b", "--json")[:2] == (2, "")
+    assert os.listdir(tmp_path) == []
 
 
 # ---------------------------------------------------------------- signals and pipes

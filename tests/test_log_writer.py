@@ -164,9 +164,9 @@ def test_a_failure_keeps_the_older_log(tmp_path, monkeypatch):
 def test_a_kill_leaves_only_a_part_which_the_next_write_replaces(tmp_path):
     path = tmp_path / "run.h5"
     script = (
-        "import os, sys; from pathlib import Path; from rotctl.log.writer import _replace\n"
+        "import os, sys; from pathlib import Path; from rotctl.log import write_log\n"
         "os.fsync = lambda _: os._exit(9)\n"
-        "_replace(Path(sys.argv[1]), bytes(1000))"
+        "write_log(Path(sys.argv[1]), bytes(1000))"
     )
     found = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     killed = subprocess.run([sys.executable, "-c", script, path], env=found, check=False)

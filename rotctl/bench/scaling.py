@@ -2,11 +2,13 @@
 
 import time
 from dataclasses import dataclass, replace
+from io import BytesIO
 from pathlib import Path
 
 import mujoco
 import numpy as np
 
+from rotctl import files
 from rotctl.config import Config, load
 from rotctl.control import Controller, Desired
 from rotctl.errors import InputError
@@ -71,7 +73,9 @@ def plot(costs: list[Cost], out: Path) -> None:
     axes.set_ylabel("control step [us]")
     axes.grid(which="both", alpha=0.2)
     axes.legend()
-    figure.savefig(out)
+    packed = BytesIO()
+    figure.savefig(packed, format=out.suffix[1:].lower() or "svg")
+    files.replace(out, packed.getvalue())
 
 
 def _times(config: Config, model: Model, contacts: int) -> tuple[float, float]:

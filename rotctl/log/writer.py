@@ -6,9 +6,7 @@ at most a ``.part``, and a full disk is an ordinary ``OSError``, not an HDF5 one
 
 import io
 import json
-import os
 from collections.abc import Mapping
-from contextlib import suppress
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.digest import content_sha256
@@ -67,10 +66,7 @@ def write_log(path: str | Path, content: bytes) -> None:
     Raises:
         InputError: ``cannot write <path>: <reason>``; nothing is left behind.
     """
-    try:
-        _replace(Path(path), content)
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from error
+    files.replace(Path(path), content, durable=True)
 
 
 def encode_run(
@@ -184,30 +180,3 @@ def _utf8(name: str, text: str) -> bytes:
     if b"\0" in encoded:
         raise InputError(f"{name} contains a NUL character")
     return encoded
-
-
-def _replace(path: Path, content: bytes) -> None:
-    """Puts ``content`` at ``path`` through a synced ``.part`` beside it."""
-    part = Path(f"{path}.part")
-    try:
-        with part.open("wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(part, path)
-    except BaseException:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise
-    _sync_folder(path.parent)
-
-
-def _sync_folder(folder: Path) -> None:
-    """Makes the rename itself durable, where a folder can be synced."""
-    if os.name != "posix":
-        return
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

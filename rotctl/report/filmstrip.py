@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.report import files, gl, stored_model
+from rotctl.report import gl, stored_model
 from rotctl.report.frame import (
     FORCE_SCALE,
     INK,

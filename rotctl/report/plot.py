@@ -4,10 +4,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
-from rotctl.report import files, gl, stored_model
+from rotctl.report import gl, stored_model
 from rotctl.report.rows import drawable, window
 from rotctl.report.signals import angular_rates, linear_rates, signals
 from rotctl.report.timeline import contact_bars

@@ -11,9 +11,9 @@ from importlib.resources import files as resources
 from pathlib import Path
 from string import Template
 
-from rotctl import __version__
+from rotctl import __version__, files
 from rotctl.log import RunLog
-from rotctl.report import files, gl
+from rotctl.report import gl
 from rotctl.report.pack import pack
 from rotctl.report.policy import BESIDE, policy, this
 from rotctl.report.title import Title, title
@@ -39,7 +39,7 @@ def replay(log: RunLog, out: Path, compare: RunLog | None = None) -> None:
         InputError: `out` cannot be written.
         LogError: a log is damaged or its model is not safe to load.
     """
-    files.replace(out, page(log, compare).encode())
+    files.replace(out, files.encoded(page(log, compare)))
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from rotctl import files
 from rotctl.log import RunLog
-from rotctl.report import encoder, files, gl, stored_model
+from rotctl.report import encoder, gl, stored_model
 from rotctl.report.frame import INK, MOODS, PAPER, SOFT, Moment, draw, moments, typeface
 from rotctl.report.rows import at_rate, drawable, window
 from rotctl.report.title import Title, title
@@ -56,7 +57,6 @@ def video(
         files.replacing(out) as part,
         scene.opened(model, backend, *FRAME, shadows=False) as stage,
     ):
-        part.touch()  # says that it cannot before the first frame is drawn
         stage.fit(states[rows[:: 1 + len(rows) // FITTED]])
         with encoder.encoding(program, part, size, RATE) as stream:
             for i, (row, moment) in enumerate(zip(rows, shown, strict=True)):

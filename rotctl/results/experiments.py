@@ -11,6 +11,7 @@ import yaml
 from pydantic import TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.listing import shipped
 from rotctl.metrics.claims import Claim, Where
@@ -108,10 +109,8 @@ def copy_into(folder: Path, name: str) -> None:
     Raises:
         InputError: there is no such experiment, or the folder cannot be written.
     """
-    try:
-        (folder / COPY.format(name)).write_bytes(_path(name).read_bytes())
-    except OSError as error:
-        raise InputError(f"cannot write into {folder}: {error.strerror or error}") from None
+    content = files.read(_path(name), LARGEST, linked=True)
+    files.replace(folder / COPY.format(name), content)
 
 
 def copies(folder: Path) -> dict[str, Path]:

@@ -1,8 +1,6 @@
 """Success rates with their uncertainty, and quartiles, by group; for people and for programs."""
 
-import os
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -10,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.metrics.rates import wilson
 from rotctl.results.found import DONE
@@ -146,20 +145,9 @@ def written(folder: Path, runs: pd.DataFrame, groups: pd.DataFrame) -> list[Path
         InputError: one of them cannot be written.
     """
     paths = [folder / "summary.csv", folder / "groups.csv"]
-    _replace(paths[0], runs.to_csv(index=False).encode())
-    _replace(paths[1], groups.to_csv(index=False).encode())
+    files.replace(paths[0], files.encoded(runs.to_csv(index=False)))
+    files.replace(paths[1], files.encoded(groups.to_csv(index=False)))
     if find_spec("pyarrow"):
         paths.append(folder / "summary.parquet")
-        _replace(paths[2], runs.to_parquet(index=False))
+        files.replace(paths[2], runs.to_parquet(index=False))
     return paths
-
-
-def _replace(path: Path, content: bytes) -> None:
-    part = Path(f"{path}.part")
-    try:
-        part.write_bytes(content)
-        os.replace(part, path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from None

@@ -5,13 +5,12 @@ never started, is a row in a summary and not a gap.
 """
 
 import json
-import os
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from rotctl import files
 from rotctl.errors import InputError
 
 MANIFEST_NAME = "sweep.jsonl"
@@ -54,18 +53,8 @@ def write(folder: Path, entries: Iterable[Entry]) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    path = folder / MANIFEST_NAME
-    part = path.with_suffix(".part")
-    try:
-        with part.open("w", encoding="utf-8") as stream:
-            stream.writelines(json.dumps(asdict(entry)) + "\n" for entry in entries)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(part, path)
-    except OSError as error:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+    lines = "".join(json.dumps(asdict(entry)) + "\n" for entry in entries)
+    files.replace(folder / MANIFEST_NAME, lines.encode(), durable=True)
 
 
 def _entry(path: Path, number: int, line: str) -> Entry:

@@ -5,11 +5,13 @@ be opened with Optuna's own tools, such as optuna-dashboard.
 """
 
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.tune.sampler import distributions
 from rotctl.tune.space import Space
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
     from optuna import Study
 
 STUDY_NAME = "study.db"
+_BESIDE = ("-journal", "-wal", "-shm")  # what SQLite adds to the name of a database
+_JOURNAL = bytes.fromhex("d9d505f920a163d7")  # at the end of one that names a super-journal
 
 
 @dataclass(frozen=True)
@@ -87,6 +91,7 @@ def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> Histor
 
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     path = folder / STUDY_NAME
+    _require_plain(path)
     try:
         study = optuna.create_study(
             storage=f"sqlite:///{path.resolve()}",
@@ -105,6 +110,21 @@ def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> Histor
     if changed:
         raise InputError(f"{folder} holds another search, with {changed[0]}; choose another --out")
     return History(study, space)
+
+
+def _require_plain(path: Path) -> None:
+    """No file that SQLite would open or remove leads out of the folder.
+
+    Raises:
+        InputError: one is a link, or no file; or a transaction over several databases was cut
+            off, which no search makes: to finish it SQLite removes a file that the journal names.
+    """
+    for each in (path, *(path.with_name(path.name + ending) for ending in _BESIDE)):
+        if os.path.lexists(each):
+            with files.opened(each, linked=False) as file:
+                file.seek(max(0, os.fstat(file.fileno()).st_size - len(_JOURNAL)))
+                if file.read() == _JOURNAL:
+                    raise InputError(f"{each}: is of a transaction over several databases")
 
 
 def by_generation(trials: list[Trial], population: int) -> tuple[list[list[Trial]], list[Trial]]:

@@ -2,13 +2,14 @@
 
 import json
 from collections import defaultdict
+from io import BytesIO
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import yaml
 
-from rotctl.errors import InputError
+from rotctl import files
 from rotctl.listing import conf_dir
 from rotctl.log import collect
 from rotctl.tune.choice import Candidate
@@ -30,15 +31,12 @@ def write(found: Found, folder: Path) -> list[Path]:
         InputError: the folder cannot be written.
     """
     written = []
-    try:
-        for group, text in choices(found).items():
-            written.append(folder / group / f"{choice_name(found)}.yaml")
-            written[-1].parent.mkdir(exist_ok=True)
-            written[-1].write_text(text, encoding="utf-8")
-        (folder / "history.txt").write_text(table(found.trials), encoding="utf-8")
-        plot(found.trials, folder / "history.svg")
-    except OSError as error:
-        raise InputError(f"cannot write {error.filename}: {error.strerror}") from None
+    for group, text in choices(found).items():
+        written.append(folder / group / f"{choice_name(found)}.yaml")
+        with files.folder(written[-1].parent, linked=False):
+            files.replace(written[-1], text.encode())
+    files.replace(folder / "history.txt", table(found.trials).encode())
+    files.replace(folder / "history.svg", plot(found.trials))
     return written
 
 
@@ -132,8 +130,8 @@ def table(trials: list[Trial]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def plot(trials: list[Trial], file: Path) -> None:
-    """The history as a picture: every trial, and the median of each generation."""
+def plot(trials: list[Trial]) -> bytes:
+    """The history as an SVG picture: every trial, and the median of each generation."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -152,7 +150,9 @@ def plot(trials: list[Trial], file: Path) -> None:
     axes.set(xlabel="generation", ylabel="score [-], fraction [-]", ylim=(None, 1.05))
     axes.legend(loc="lower right")
     with matplotlib.rc_context({"svg.hashsalt": "rotctl"}):
-        figure.savefig(file, metadata={"Date": None})
+        packed = BytesIO()
+        figure.savefig(packed, format="svg", metadata={"Date": None})
+    return packed.getvalue()
 
 
 def _groups(found: Found) -> list[str]:

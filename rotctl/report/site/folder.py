@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from rotctl.errors import InputError
-from rotctl.report import files
+from rotctl import files
 
 # What a report puts into folders; other files there are not ours to remove.
 OURS = ("pictures/*.png", "replays/*.html", "sweeps/*.html", "sweeps/*.csv", "charts/*.svg")
@@ -22,13 +21,11 @@ def write(content: Mapping[str, bytes], out: Path) -> None:
     """
     for address, data in content.items():
         path = out / address
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(f"cannot write {path.parent}: {error.strerror}") from None
-        files.replace(path, data)
+        with files.folder(path.parent, linked=path.parent == out):
+            files.replace(path, data)
     kept = {out / address for address in content}
     for pattern in OURS:
         for path in set(out.glob(pattern)) - kept:
-            with suppress(OSError):
-                path.unlink()
+            if not path.parent.is_symlink():
+                with suppress(OSError):
+                    path.unlink()
