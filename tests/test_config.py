@@ -84,6 +84,28 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "pose_stiffness, pose_damping",
         ),
         (
+            "behaviour.reference.clip=x",
+            "unknown key 'behaviour.reference.clip'; valid keys under behaviour.reference: "
+            "none, it is null",
+        ),
+        ("+seed=1", "seed is there already; write seed=VALUE"),
+        ("+start=rest", "start is there already; write start=VALUE"),
+        ("~seed=1", "override '~seed=1': to remove a key, write ~seed"),
+        ("~start=rest", "override '~start=rest': to remove a key, write ~start"),
+        (
+            "behaviour.poses.a={hips: 1.0}",
+            'behaviour.poses.a={"hips": 1.0}: has keys that are not there yet; '
+            "write +behaviour.poses.a=VALUE",
+        ),
+        ("behaviour.reference={clip: x}",
+         "behaviour.reference.window: missing, it cannot be left out"),
+        (
+            "controller.gains.linear_damping={a: 1}",
+            'controller.gains.linear_damping={"a": 1}: must be a list, in brackets',
+        ),
+        ("a." * 100 + "a=1",
+         f"override '{'a.' * 28}a...': its key is longer than 200 characters"),
+        (
             "controller.gains.linear_damping.x=3",
             "unknown key 'controller.gains.linear_damping.x'; valid keys under "
             "controller.gains.linear_damping: none, it is a value",
@@ -177,7 +199,6 @@ def plain():
         # Lists.
         ("physics.gravity", [], "[]: must have 3 values"),
         ("physics.contact_solref", [1, 2, 3], "[1, 2, 3]: too many values, at most 2"),
-        ("start.pitch", [1, 0], "[1, 0]: the range [1, 0] is empty: low must not exceed high"),
         ("character.bodies", [], "[]: too few values, at least 1"),
     ],
 )
@@ -193,12 +214,20 @@ def test_bad_values_are_named_with_what_would_be_valid(plain, key, value, messag
     assert str(caught.value) == f"{key}={message}"
 
 
+def test_a_value_that_a_check_of_our_own_names_is_not_repeated(plain):
+    data = copy.deepcopy(plain)
+    data["start"]["pitch"] = [1, 0]
+    with pytest.raises(InputError) as caught:
+        check(data)
+    assert str(caught.value) == ("start.pitch: the range [1, 0] is empty: low must not exceed high")
+
+
 def test_a_bad_value_in_a_list_is_named_by_its_place(plain):
     data = copy.deepcopy(plain)
     data["controller"]["gains"]["linear_damping"][2] = math.nan
     with pytest.raises(InputError) as caught:
         check(data)
-    assert str(caught.value) == "controller.gains.linear_damping.2=nan: must be a finite number"
+    assert str(caught.value) == "controller.gains.linear_damping[2]=nan: must be a finite number"
 
 
 @pytest.mark.parametrize(
@@ -227,7 +256,18 @@ def test_a_huge_override_is_refused_at_once_and_not_repeated(value):
 
 
 def test_deep_nesting_is_refused():
-    assert complaint("seed=" + "[" * 3000).endswith(NOT_READ)
+    for value in ("[" * 3000, "{a:" * 100 + "1" + "}" * 100, "[" * 13 + "]" * 13):
+        message = complaint(f"seed={value}")
+        shown = f"seed={value}" if len(value) < 50 else f"{f'seed={value}':.57}..."
+        assert message == f"override {shown!r}: nested more than 12 deep"
+
+
+def test_a_long_value_is_not_repeated():
+    joints = ",".join(f"joint_{i}: 1" for i in range(700))
+    assert complaint(f"behaviour.poses.a={{{joints}}}") == (
+        'behaviour.poses.a={"joint_0": 1, "joint_1": 1, "joint_2": 1, "joint_3": 1, ...: '
+        "has keys that are not there yet; write +behaviour.poses.a=VALUE"
+    )
 
 
 def test_the_last_of_equal_overrides_wins():
@@ -254,8 +294,8 @@ def test_plain_data_is_checked_the_same_way(plain):
     data["character"]["bodies"][0]["geoms"][0]["sizes"] = data["physics"].pop("substep")
     with pytest.raises(
         InputError,
-        match=r"^unknown key 'character\.bodies\.0\.geoms\.0\.sizes'; valid keys under "
-        r"character\.bodies\.0\.geoms\.0: name, size, start, mass, end, colour$",
+        match=r"^unknown key 'character\.bodies\[0\]\.geoms\[0\]\.sizes'; valid keys under "
+        r"character\.bodies\[0\]\.geoms\[0\]: name, size, start, mass, end, colour$",
     ):
         check(data)
 

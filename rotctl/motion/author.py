@@ -10,12 +10,12 @@ from pydantic.dataclasses import dataclass as validated
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial.transform import Rotation
 
+from rotctl import checked
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip, RollAbout, joint_columns
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.turning import Motion, rolled_by, upright
-from rotctl.motion.untrusted import read_yaml
 from rotctl.motion.writing import make_clip
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite, Vector
@@ -63,7 +63,7 @@ def load_keys(path: Path) -> Keys:
     Raises:
         InputError: one line that names the file, the bad value and what is valid.
     """
-    return read_yaml(path, Keys)
+    return checked.read(Keys, path, linked=True)
 
 
 def author(model: Model, keys: Keys, character: str) -> Clip:

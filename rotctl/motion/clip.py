@@ -14,10 +14,10 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl import checked, documents, files
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.mechanics.model import Model
-from rotctl.motion.untrusted import MAX_YAML_BYTES, parsed, text_of
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
@@ -126,9 +126,9 @@ def load_clip(name: str) -> Clip:
 
 
 def _read(path: Path) -> Clip:
-    return _parsed(path, text_of(path, MAX_YAML_BYTES))
+    return _parsed(str(path), files.text(path, documents.LARGEST, linked=True))
 
 
 @lru_cache(maxsize=8)  # all runs of a sweep ask for the same text, and parsing it takes a while
-def _parsed(path: Path, text: str) -> Clip:
-    return parsed(path, text, Clip)
+def _parsed(where: str, text: str) -> Clip:
+    return checked.from_yaml(Clip, where, text)

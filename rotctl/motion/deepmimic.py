@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl import documents
 from rotctl.errors import InputError
 from rotctl.motion.capture import MAX_FRAMES, Y_UP_FACING_X, Capture, assembled
 from rotctl.motion.untrusted import LARGEST, text_of
@@ -71,11 +72,11 @@ def read_deepmimic(path: Path) -> Capture:
 
 def _rows(path: Path) -> Array:
     try:
-        data: Any = json.loads(text_of(path))
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}: is no JSON: {error.msg}") from None
-    except (RecursionError, ValueError):  # nested too deeply, or an absurdly long number
-        raise InputError(f"{path}: is no JSON of a motion") from None
+        data: Any = documents.from_json(text_of(path))
+    except ValueError as error:
+        line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
+        reason = error.msg if isinstance(error, json.JSONDecodeError) else error
+        raise InputError(f"{path}{line}: is no JSON: {reason}") from None
     rows = data.get("Frames") if isinstance(data, dict) else None
     if not isinstance(rows, list) or not 2 <= len(rows) <= MAX_FRAMES:
         raise InputError(f"{path}: Frames must be a list of 2 to {MAX_FRAMES} frames")

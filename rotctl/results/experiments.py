@@ -7,11 +7,9 @@ to show.
 from dataclasses import field
 from pathlib import Path
 
-import yaml
-from pydantic import TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import files
+from rotctl import checked, documents, files
 from rotctl.errors import InputError
 from rotctl.listing import shipped
 from rotctl.metrics.claims import Claim, Where
@@ -19,8 +17,6 @@ from rotctl.settings import STRICT
 
 PREFIX = "+experiment="
 COPY = "experiment-{}.yaml"
-LARGEST = 1_000_000  # [bytes] of an experiment; people write them
-_TOO_LARGE = f"larger than {LARGEST} bytes"
 
 
 @validated(frozen=True, config=STRICT)
@@ -65,9 +61,6 @@ def _key(override: str) -> str:
     return override.partition("=")[0]
 
 
-_ADAPTER = TypeAdapter(Experiment)
-
-
 def names() -> list[str]:
     """The experiments there are, sorted."""
     return sorted(path.stem for path in shipped("experiments").glob("*.yaml"))
@@ -79,28 +72,16 @@ def experiment(name: str) -> Experiment:
     Raises:
         InputError: there is no such experiment, or its file is wrong.
     """
-    return read(_path(name))
+    return checked.read(Experiment, _path(name), linked=True)
 
 
 def read(path: Path) -> Experiment:
-    """Read the file of an experiment.
+    """Read the copy of an experiment in the folder of a sweep, which may be a stranger's.
 
     Raises:
         InputError: it is wrong; one line that says where.
     """
-    try:
-        if path.stat().st_size > LARGEST:
-            raise InputError(f"{path}: {_TOO_LARGE}")
-        text = path.read_text(encoding="utf-8")
-        return _ADAPTER.validate_python(yaml.safe_load(text))
-    except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise InputError(f"{path}: {where}: {first['msg']}") from None
-    except (yaml.YAMLError, RecursionError) as error:
-        raise InputError(f"{path}: is not YAML: {' '.join(str(error).split())}") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read: {error}") from None
+    return checked.read(Experiment, path, linked=False)
 
 
 def copy_into(folder: Path, name: str) -> None:
@@ -109,7 +90,7 @@ def copy_into(folder: Path, name: str) -> None:
     Raises:
         InputError: there is no such experiment, or the folder cannot be written.
     """
-    content = files.read(_path(name), LARGEST, linked=True)
+    content = files.read(_path(name), documents.LARGEST, linked=True)
     files.replace(folder / COPY.format(name), content)
 
 

@@ -2,11 +2,12 @@
 
 from typing import Any
 
+from rotctl.plain import NOTHING, find, way
+
 
 def value_at(data: Any, key: str) -> Any:
     """What plain config data have at a dotted key; the name, where that is a group's choice."""
-    for part in key.split("."):
-        if not isinstance(data, dict) or part not in data:
-            return None
-        data = data[part]
-    return data["name"] if isinstance(data, dict) and "name" in data else data
+    found = find(data, way(key))
+    if isinstance(found, dict) and "name" in found:
+        return found["name"]
+    return None if found is NOTHING else found

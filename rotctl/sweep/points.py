@@ -13,9 +13,11 @@ from typing import Any
 
 from hydra.core.override_parser.types import Glob, Override, OverrideType
 
-from rotctl.config import Config, check, composed, parsed, to_dict
+from rotctl import plain
+from rotctl.config import Config, check, composed, to_dict
 from rotctl.errors import InputError
 from rotctl.listing import choices
+from rotctl.overrides import parsed
 from rotctl.results.keys import value_at
 
 MOST_POINTS = 100_000
@@ -86,45 +88,32 @@ def _values(override: str) -> list[str]:
 
 def _config(overrides: tuple[str, ...], bases: dict[tuple[str, ...], dict[str, Any]]) -> Config:
     """As `config.load`, but quick where only plain values differ from an earlier point."""
-    plain = [_plain(override) for override in overrides]
-    composing = tuple(o for o, way in zip(overrides, plain, strict=True) if way is None)
-    setting = {way: _parsed(o).value() for o, way in zip(overrides, plain, strict=True) if way}
+    ways = [_way(override) for override in overrides]
+    composing = tuple(o for o, parts in zip(overrides, ways, strict=True) if parts is None)
+    setting = {parts: _parsed(o).value() for o, parts in zip(overrides, ways, strict=True) if parts}
     if any(_parsed(override).package or not _is_group(override) for override in composing):
         return check(composed(list(overrides)))  # their order may matter
     if composing not in bases:
         bases[composing] = composed(list(composing))
     data = bases[composing]
-    for way, value in setting.items():
-        if not _is_leaf(data, way):
+    for parts, value in setting.items():
+        before = plain.find(data, parts)
+        if before is plain.NOTHING or isinstance(before, dict):
             return check(composed(list(overrides)))  # a new key, or an error for Hydra to tell
-        data = _set(data, way, value)
+        data = plain.put(data, parts, value)
     return check(data)
 
 
-def _plain(override: str) -> tuple[str, ...] | None:
+def _way(override: str) -> plain.Way | None:
     """The way to the value that an override sets, if setting is all it does."""
     found = _parsed(override)
     if found.type != OverrideType.CHANGE or found.package or _is_group(override):
         return None
     if isinstance(found.value(), dict):
         return None
-    return tuple(str(found.key_or_group).split("."))
+    return plain.way(str(found.key_or_group))
 
 
 def _is_group(override: str) -> bool:
     found: Override = _parsed(override)
     return bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
-
-
-def _is_leaf(data: Any, way: tuple[str, ...]) -> bool:
-    for part in way:
-        if not isinstance(data, dict) or part not in data:
-            return False
-        data = data[part]
-    return not isinstance(data, dict)
-
-
-def _set(data: dict[str, Any], way: tuple[str, ...], value: Any) -> dict[str, Any]:
-    """A copy of `data` with another value at `way`; what does not change is shared."""
-    first, *rest = way
-    return {**data, first: _set(data[first], tuple(rest), value) if rest else value}

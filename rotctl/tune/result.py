@@ -12,11 +12,12 @@ import yaml
 from rotctl import files
 from rotctl.listing import conf_dir
 from rotctl.log import collect
+from rotctl.plain import way
 from rotctl.tune.choice import Candidate
 from rotctl.tune.history import Trial
 from rotctl.tune.objective import finished
 from rotctl.tune.search import Found
-from rotctl.tune.values import final_seeds, path, put, training_seeds
+from rotctl.tune.values import final_seeds, put, training_seeds
 
 
 def write(found: Found, folder: Path) -> list[Path]:
@@ -156,7 +157,7 @@ def plot(trials: list[Trial]) -> bytes:
 
 
 def _groups(found: Found) -> list[str]:
-    keys = (str(path(parameter.key)[0]) for parameter in found.search.space.parameters)
+    keys = (str(way(parameter.key)[0]) for parameter in found.search.space.parameters)
     return list(dict.fromkeys(keys))
 
 

@@ -2,12 +2,13 @@
 
 import re
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-import yaml
-from pydantic import AfterValidator, Field, Strict, TypeAdapter, ValidationError
+from pydantic import AfterValidator, Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl import documents
+from rotctl.checked import checked
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
@@ -26,6 +27,12 @@ def _training(seed: int) -> int:
     if seed < TRAINING_SEEDS:
         raise ValueError(f"training seeds start at {TRAINING_SEEDS:,}; those below are for judging")
     return seed
+
+
+def _word(name: str) -> str:
+    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
+        raise ValueError("must be letters, digits and _, a letter first")
+    return name
 
 
 def unseeded(overrides: list[str]) -> list[str]:
@@ -155,7 +162,7 @@ class Space:
         trials: candidates, where the command line names no other budget.
     """
 
-    name: Annotated[str, Field(pattern=r"^[A-Za-z]\w*$")]
+    name: Annotated[str, AfterValidator(_word)]
     title: str
     base: Overrides
     parameters: Annotated[list[Parameter], Field(min_length=2, max_length=MOST)]
@@ -171,23 +178,6 @@ class Space:
         twice = next((key for key in keys if keys.count(key) > 1), None)
         if twice:
             raise ValueError(f"parameters name {twice} twice")
-
-
-_ADAPTER = TypeAdapter(Space)
-_PARTS: dict[object, type] = {
-    "parameters": Parameter,
-    "runs": Runs,
-    "objective": Objective,
-    "stopping": Stopping,
-    "sampler": Sampler,
-}
-
-_WORDS = {
-    "dataclass_type": "must be keys with values",
-    "string_pattern_mismatch": "must be letters, digits and _, a letter first",
-    "too_short": "too few, at least {min_length}",
-    "too_long": "too many, at most {max_length}",
-}
 
 
 def names() -> list[str]:
@@ -206,39 +196,10 @@ def load_space(name: str) -> Space:
             f"{name}: no such space; valid: {', '.join(names())}, or the path of a .yaml file"
         )
     path = Path(name) if name.endswith(".yaml") else conf_dir() / "tune" / f"{name}.yaml"
+    data = documents.read_yaml(path, linked=True)
+    if isinstance(data, dict) and "parameters" in data:
+        data["parameters"] = expanded(data["parameters"])
     try:
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from None
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: is no YAML: {' '.join(str(error).split())}") from None
-    if not isinstance(data, dict):
-        raise InputError(f"{path}: must be keys with values: {', '.join(_fields(Space))}")
-    try:
-        return _ADAPTER.validate_python(
-            {k: expanded(v) if k == "parameters" else v for k, v in data.items()}
-        )
-    except ValidationError as error:
-        raise InputError(f"{path}: {_complaint(error.errors(include_url=False)[0])}") from None
-
-
-def _complaint(first: Any) -> str:
-    """One line on what pydantic found wrong."""
-    loc = [part for part in first["loc"] if isinstance(part, str | int)]
-    where = "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in loc).lstrip(".")
-    if first["type"] == "unexpected_keyword_argument":
-        owner = _PARTS.get(loc[0], Space) if len(loc) > 1 else Space
-        return f"unknown key {where!r}; valid keys: {', '.join(_fields(owner))}"
-    if first["type"] == "missing":
-        return f"{where}: missing, it cannot be left out"
-    message = _WORDS.get(first["type"], "").format(**first.get("ctx", {}))
-    message = message or first["msg"].removeprefix("Value error, ")
-    message = re.sub(r"^Input should", "must", message)
-    value = first["input"]
-    if isinstance(value, str | int | float):
-        where += f"={value!r}"
-    return f"{where}: {message}" if where else message
-
-
-def _fields(owner: type) -> list[str]:
-    return list(owner.__dataclass_fields__)  # type: ignore[attr-defined]
+        return checked(Space, data)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None

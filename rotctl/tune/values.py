@@ -1,21 +1,17 @@
 """Numbers in and out of a config's plain data, by dotted key; what a space makes of a config."""
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from rotctl import plain
 from rotctl.config import Config, check, load, to_dict
 from rotctl.errors import InputError
+from rotctl.plain import NOTHING, dotted, member, way
 from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
 
 Values = dict[str, float]  # key -> value, in the order of the space
 BLOCK = 1_000_000  # training seeds of one search
 FINAL = 900_000  # of these, from here on, those that choose between the last candidates
-
-
-def path(key: str) -> tuple[str | int, ...]:
-    """`a.b[0]` to ("a", "b", 0)."""
-    return tuple(int(p) if p.isdecimal() else p for p in re.findall(r"[^.\[\]]+", key))
 
 
 def get(data: Any, key: str) -> float:
@@ -24,16 +20,13 @@ def get(data: Any, key: str) -> float:
     Raises:
         InputError: there is none; the line names the valid keys there.
     """
-    found = data
-    for depth, part in enumerate(path(key)):
-        try:
-            found = found[part]
-        except (KeyError, IndexError, TypeError):
-            where = ".".join(map(str, path(key)[:depth]))
-            valid = _members(found)
-            raise InputError(
-                f"parameter {key}: not in the config; valid under {where or 'it'}: {valid}"
-            ) from None
+    found, parts = data, way(key)
+    for depth, part in enumerate(parts):
+        inner = member(found, part)
+        if inner is NOTHING:
+            where, valid = dotted(parts[:depth]) or "it", _members(found)
+            raise InputError(f"parameter {key}: not in the config; valid under {where}: {valid}")
+        found = inner
     if isinstance(found, bool) or not isinstance(found, int | float):
         raise InputError(f"parameter {key}: is {_members(found)}, no single number")
     return float(found)
@@ -42,7 +35,7 @@ def get(data: Any, key: str) -> float:
 def put(data: Any, values: Mapping[str, float]) -> Any:
     """The same plain data with numbers changed; every key must be there."""
     for key, value in values.items():
-        data = _replaced(data, path(key), value)
+        data = plain.put(data, way(key), value)
     return data
 
 
@@ -111,31 +104,10 @@ def final_seeds(space: Space, seed: int) -> range:
 def _begun(space: Space, data: Any) -> Any:
     """Plain data, with the numbers that it does not have and the space has a start for."""
     for parameter in space.parameters:
-        if parameter.start is not None and not _has(data, path(parameter.key)):
-            data = _replaced(data, path(parameter.key), parameter.start)
+        parts = way(parameter.key)
+        if parameter.start is not None and plain.find(data, parts) is NOTHING:
+            data = plain.put(data, parts, parameter.start)
     return data
-
-
-def _has(data: Any, parts: tuple[str | int, ...]) -> bool:
-    for part in parts:
-        try:
-            data = data[part]
-        except (KeyError, IndexError, TypeError):
-            return False
-    return True
-
-
-def _replaced(data: Any, parts: tuple[str | int, ...], value: float) -> Any:
-    if not parts:
-        return value
-    head, rest = parts[0], parts[1:]
-    if isinstance(head, int):
-        items = list(data) if isinstance(data, list | tuple) else []
-        items += [0.0] * (head + 1 - len(items))
-        items[head] = _replaced(items[head], rest, value)
-        return items
-    members = data if isinstance(data, dict) else {}
-    return {**members, head: _replaced(members.get(head), rest, value)}
 
 
 def _members(data: Any) -> str:

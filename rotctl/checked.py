@@ -1,0 +1,160 @@
+"""Plain data to frozen settings, or one line on the first thing that is wrong with them."""
+
+import json
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import is_dataclass
+from functools import cache
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
+
+from pydantic import TypeAdapter, ValidationError
+
+from rotctl import documents, files
+from rotctl.errors import InputError
+from rotctl.plain import NOTHING, dotted, member
+
+T = TypeVar("T")
+LONGEST = 60  # characters of a value that a message repeats
+
+_WORDS = {
+    "tuple_type": "must be a list, in brackets",
+    "list_type": "must be a list, in brackets",
+    "dict_type": "must be keys with values",
+    "dataclass_type": "must be keys with values",
+    "too_long": "too many values, at most {max_length}",
+    "too_short": "too few values, at least {min_length}",
+    "missing": "missing, it cannot be left out",
+    "union_tag_not_found": "missing, it cannot be left out",
+}
+
+
+def checked(shape: type[T], data: Any) -> T:
+    """Data as the validated dataclass `shape`.
+
+    Raises:
+        InputError: one line that names the bad value and what is valid.
+    """
+    if not isinstance(data, dict):
+        raise InputError(f"must be keys with values: {', '.join(keys(shape))}")
+    try:
+        found: T = adapter(shape).validate_python(data)
+    except ValidationError as error:
+        raise InputError(_complaint(shape, data, error.errors(include_url=False))) from None
+    return found
+
+
+def read(shape: type[T], path: Path, *, linked: bool) -> T:
+    """A YAML file as `shape`; for `linked` see `rotctl.files.opened`.
+
+    Raises:
+        InputError: one line that names the file, the bad value and what is valid.
+    """
+    return from_yaml(shape, str(path), files.text(path, documents.LARGEST, linked=linked))
+
+
+def from_yaml(shape: type[T], where: str, text: str) -> T:
+    """A YAML text as `shape`; `where` it is from is for the messages. Errors as for `read`."""
+    data = documents.from_yaml(where, text)
+    try:
+        return checked(shape, data)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def keys(shape: Any, way: Sequence[int | str] = ()) -> list[str]:
+    """The keys that settings have at some place; empty where any key will do, or none.
+
+    Args:
+        shape: a validated dataclass.
+        way: to the place, as pydantic's errors have it: with the tags of unions.
+    """
+    for part in way:
+        shape = _inner(shape, part)
+    return list(shape.__dataclass_fields__) if is_dataclass(shape) else []
+
+
+def brief(value: Any) -> str:
+    """A value as an override would have it; cut if it is long."""
+    return clip(str(value) if isinstance(value, float) else json.dumps(value, default=str))
+
+
+def clip(text: str) -> str:
+    """The text, or its beginning if it is long."""
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)  # of a type, made once
+
+
+def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
+    """One line on the first thing that pydantic found wrong."""
+    first = errors[0]
+    kind, way, limits = first["type"], first["loc"], first.get("ctx", {})
+    # Of the way, what is there in the data: pydantic adds the types of a union.
+    place: list[int | str] = []
+    found = data
+    for part in way:
+        inner = member(found, part)
+        if inner is not NOTHING:
+            place.append(clip(part) if isinstance(part, str) else part)
+            found = inner
+    where = dotted(place)
+    if kind == "unexpected_keyword_argument":
+        return unknown_key(where, dotted(place[:-1]), keys(shape, way[:-1]))
+    if kind == "missing" and isinstance(found, list | tuple):
+        # A list that is too short: pydantic counts the values that are not there.
+        wanted = 1 + max(e["loc"][-1] for e in errors if e["loc"][:-1] == way[:-1])
+        return f"{where}={brief(found)}: must have {wanted} values"
+    if kind == "union_tag_invalid":
+        # Settings that differ in kind, and a key that says which.
+        key = limits["discriminator"].strip("'")
+        name, valid = dotted([*place, key]), limits["expected_tags"]
+        return f"{name}={brief(limits['tag'])}: no such {key}; valid: {valid}"
+    if kind in ("missing", "union_tag_not_found"):
+        absent = way[-1] if kind == "missing" else limits["discriminator"].strip("'")
+        return f"{dotted([*place, absent])}: {_WORDS[kind]}"
+    message = _WORDS.get(kind, "").format(**limits) or first["msg"]
+    message = message.removeprefix("Value error, ")
+    message = re.sub(r"^Input should be", "must be", message)
+    plain = not isinstance(found, dict | list | tuple)
+    # A longer one is looked up in the file; a check of our own says what it is about.
+    shown = plain or (kind != "value_error" and len(str(found)) < LONGEST)
+    place_and_value = f"{where}={brief(found)}" if shown else where
+    return f"{place_and_value}: {message[:1].lower()}{message[1:]}" if where else message
+
+
+def unknown_key(key: str, where: str, valid: Sequence[str]) -> str:
+    """One line on a key that settings do not have."""
+    under = f" under {where}" if where else ""
+    return f"unknown key {clip(key)!r}; valid keys{under}: {', '.join(valid)}"
+
+
+def _inner(shape: Any, part: int | str) -> Any:
+    """The type one step down, as far as it leads to settings."""
+    origin, inside = get_origin(shape), get_args(shape)
+    if origin is Annotated:
+        return _inner(inside[0], part)
+    if origin in (Union, UnionType):
+        some = [each for each in inside if each is not NoneType]
+        tagged = [each for each in some if part in _tags(each)]
+        return tagged[0] if tagged else _inner(some[0], part)
+    if origin in (list, tuple):
+        return inside[0]
+    if origin is dict:
+        return inside[1]
+    hints = get_type_hints(shape, include_extras=True) if is_dataclass(shape) else {}
+    return hints.get(str(part))
+
+
+def _tags(shape: Any) -> set[Any]:
+    """What a member of a union may be told by."""
+    if not is_dataclass(shape):
+        return set()
+    return {
+        tag
+        for hint in get_type_hints(shape).values()
+        if get_origin(hint) is Literal
+        for tag in get_args(hint)
+    }

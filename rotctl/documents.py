@@ -1,0 +1,207 @@
+"""YAML and JSON from strangers to plain data: numbers, texts, lists and dicts of them.
+
+Nothing is executed, looked up or multiplied: no tags, no aliases, no keys twice, bounded depth and
+digits, no character that neither YAML nor a terminal would show. A date stays a text. No message
+repeats a syntax error's line: the file may not be what its name says, and messages end up in
+reports.
+"""
+
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NoReturn
+
+import yaml
+
+from rotctl import files
+from rotctl.errors import InputError
+
+LARGEST = 2_000_000  # bytes of a YAML file; people write them
+LARGEST_LINES = 100_000_000  # bytes of a file of JSON lines
+MOST_LINES = 500_000
+DEEPEST = 12  # lists and dicts within each other
+MOST_DIGITS = 40  # of a whole number
+
+# All but what YAML calls printable. JSON's escapes can spell half a surrogate pair too.
+_UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+# C's parser is five times faster; it may be missing, and both read the same.
+_C = hasattr(yaml, "CSafeLoader")
+_Safe: Any = yaml.CSafeLoader if _C else yaml.SafeLoader
+
+
+_TYPE = "tag:yaml.org,2002:"
+_PLAIN = ("null", "bool", "int", "float")  # what a value without quotes may be beside a text
+
+
+class _Refused(yaml.MarkedYAMLError):
+    """Good YAML, but more than plain data."""
+
+
+class _Loader(_Safe):  # type: ignore[misc]
+    """YAML's own types without dates, merged keys and tags."""
+
+    def construct_scalar(self, node: Any) -> str:
+        """A text, or what a number is made of."""
+        value: str = super().construct_scalar(node)
+        if _UNPRINTABLE.search(value):
+            raise _at(node, "a text has a control character")
+        return value
+
+    def construct_yaml_int(self, node: Any) -> int:
+        """A whole number."""
+        if len(node.value) > MOST_DIGITS:
+            raise _at(node, f"a number has more than {MOST_DIGITS} digits")
+        number: int = super().construct_yaml_int(node)
+        return number
+
+    def construct_mapping(self, node: Any, deep: bool = False) -> dict[Any, Any]:
+        """A dict; a key that comes twice would hide a value."""
+        keys = set()
+        for key, _ in node.value:
+            if key.tag != f"{_TYPE}str":
+                raise _at(key, "a key is no text; put it in quotes")
+            if key.value in keys:
+                raise _at(key, "a key comes twice")
+            keys.add(key.value)
+        found: dict[Any, Any] = super().construct_mapping(node, deep)
+        return found
+
+
+_Loader.yaml_implicit_resolvers = {
+    first: [(tag, form) for tag, form in pairs if tag.removeprefix(_TYPE) in _PLAIN]
+    for first, pairs in _Safe.yaml_implicit_resolvers.items()
+}
+_Loader.add_constructor(f"{_TYPE}int", _Loader.construct_yaml_int)
+
+
+def read_yaml(path: Path, limit: int = LARGEST, *, linked: bool) -> Any:
+    """The data of a YAML file; None if there are none.
+
+    Args:
+        limit: largest size [bytes].
+        linked: whether the path may be a symbolic link, see `files.opened`.
+
+    Raises:
+        InputError: one line that names the file and the line in it.
+    """
+    return from_yaml(str(path), files.text(path, limit, linked=linked))
+
+
+def from_yaml(where: str, text: str) -> Any:
+    """The data of a YAML text; `where` it is from is for the messages."""
+    try:
+        _check(text)
+        return yaml.load(text, _Loader)  # safe: plain data only
+    except yaml.MarkedYAMLError as error:
+        line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise InputError(f"{where}{line}: {_reason(error)}") from None
+    except (yaml.YAMLError, ValueError):
+        raise InputError(f"{where}: is no YAML: it has a control character") from None
+
+
+def from_json(text: str) -> Any:
+    """The data of a JSON text.
+
+    Raises:
+        ValueError: it is none, or not plain.
+    """
+    try:
+        data = json.loads(
+            text,
+            parse_constant=_no_number,
+            parse_float=_finite,
+            parse_int=_short,
+            object_pairs_hook=_unique,
+        )
+    except RecursionError:
+        raise ValueError("nested too deeply") from None
+    for value, depth in _walk(data):
+        if isinstance(value, str) and _UNPRINTABLE.search(value):
+            raise ValueError("a text has a control character")
+        if depth == DEEPEST and isinstance(value, dict | list):
+            raise ValueError(f"nested more than {DEEPEST} deep")
+    return data
+
+
+def read_json_lines(path: Path, *, linked: bool) -> Iterator[tuple[int, Any]]:
+    """The data of every line, with its number from 1 on; None where it is no plain JSON.
+
+    Raises:
+        InputError: it is no text file, or too large.
+    """
+    lines = files.text(path, LARGEST_LINES, linked=linked).split("\n")
+    if not lines[-1]:
+        lines.pop()
+    if len(lines) > MOST_LINES:
+        raise InputError(f"{path}: more than {MOST_LINES} lines")
+    for number, line in enumerate(lines, 1):
+        try:
+            yield number, from_json(line)
+        except ValueError:
+            yield number, None
+
+
+def _check(text: str) -> None:
+    """Refuse what would cost more than it looks like: before anything is built, event by event."""
+    depth = 0
+    for event in yaml.parse(text, _Loader):
+        if isinstance(event, yaml.CollectionStartEvent):
+            depth += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            depth -= 1
+        if depth > DEEPEST:  # would overflow the loader's stack
+            raise _at(event, f"nested more than {DEEPEST} deep")
+        if isinstance(event, yaml.AliasEvent):
+            raise _at(event, "has an alias; write it out")
+        if getattr(event, "tag", None) is not None:
+            raise _at(event, "has a tag; write plain values")
+
+
+def _reason(error: yaml.MarkedYAMLError) -> str:
+    if isinstance(error, _Refused):
+        return str(error.problem)
+    # C's texts are fixed, while Python's parser quotes.
+    texts = filter(None, (error.context, error.problem)) if _C else ()
+    return ": ".join(filter(None, ("is no YAML", ", ".join(texts))))
+
+
+def _at(place: Any, problem: str) -> _Refused:
+    return _Refused(problem=problem, problem_mark=place.start_mark)
+
+
+def _walk(data: Any) -> Iterator[tuple[Any, int]]:
+    """All values and keys, with how deep they are; the depth is a stranger's: no recursion."""
+    waiting = [(data, 0)]
+    while waiting:
+        value, depth = waiting.pop()
+        yield value, depth
+        if isinstance(value, dict):
+            waiting += [(inner, depth + 1) for pair in value.items() for inner in pair]
+        elif isinstance(value, list):
+            waiting += [(inner, depth + 1) for inner in value]
+
+
+def _no_number(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no number")
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    if not math.isfinite(number):
+        raise ValueError("a number is too large")
+    return number
+
+
+def _short(digits: str) -> int:
+    if len(digits) > MOST_DIGITS:
+        raise ValueError(f"a number has more than {MOST_DIGITS} digits")
+    return int(digits)
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError("a key comes twice")
+    return found

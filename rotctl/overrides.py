@@ -1,0 +1,77 @@
+"""Overrides in Hydra's syntax, as strings from a command line, an experiment or a tune space.
+
+Hydra's parser reads them; nothing is instantiated and no resolver is honoured, so that a
+stranger's override cannot execute code.
+"""
+
+import re
+from itertools import accumulate
+
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
+from hydra.errors import HydraException
+
+from rotctl.checked import brief, clip
+from rotctl.errors import InputError
+from rotctl.listing import choices
+
+LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte
+LONGEST_KEY = 200
+DEEPEST = 12  # brackets within each other
+_STEPS = {"[": 1, "{": 1, "(": 1, "]": -1, "}": -1, ")": -1}
+
+
+def parsed(override: str) -> Override:
+    """An override, read but not carried out; it may be a sweep over several values.
+
+    Raises:
+        InputError: this tool does not take it; one line that says why.
+    """
+    shown = f"override {clip(override)!r}"
+    if len(override) > LONGEST:
+        raise InputError(f"{shown}: longer than {LONGEST} characters")
+    if len(override.partition("=")[0]) > LONGEST_KEY:
+        raise InputError(f"{shown}: its key is longer than {LONGEST_KEY} characters")
+    if max(accumulate((_STEPS.get(c, 0) for c in override), initial=0)) > DEEPEST:
+        raise InputError(f"{shown}: nested more than {DEEPEST} deep")
+    if "${" in override or "_target_" in override:
+        raise InputError(f"{shown}: interpolations and _target_ are not honoured; give a value")
+    if re.match(r"[+~]*hydra[./=]", override):
+        raise InputError(f"{shown}: Hydra's own settings cannot be changed here")
+    if "=" not in override and not override.startswith("~"):
+        raise InputError(f"{shown} has no '='; write key=value, such as seed=3")
+    try:
+        found = OverridesParser.create().parse_override(override)
+        if not found.is_sweep_override() and not found.is_delete():
+            found.value()
+    except (HydraException, RecursionError, ValueError):
+        raise InputError(
+            f"{shown}: cannot be read; write key=value, and quote a text with special "
+            "characters: \"key='a text'\""
+        ) from None
+    if not found.key_or_group:
+        raise InputError(f"{shown} has no key; write key=value, such as seed=3")
+    if found.is_delete() and "=" in override:
+        raise InputError(f"{shown}: to remove a key, write ~{found.key_or_group}")
+    return found
+
+
+def single(override: str) -> Override:
+    """An override that a single run takes.
+
+    Raises:
+        InputError: it is none; one line that says why.
+    """
+    found, shown = parsed(override), f"override {clip(override)!r}"
+    key = str(found.key_or_group)
+    if found.is_sweep_override():
+        raise InputError(f"{shown}: run takes one value for {key}; rotctl sweep takes many")
+    if found.is_delete():
+        return found
+    value = found.value()
+    if value == {}:
+        raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
+    valid = choices(key)
+    if valid and not isinstance(value, dict) and value not in valid:
+        raise InputError(f"{key}={brief(value)}: no such choice; valid: {', '.join(valid)}")
+    return found

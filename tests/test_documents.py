@@ -1,0 +1,143 @@
+"""YAML and JSON from strangers: plain data, or one line that does not repeat them."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from rotctl import documents
+from rotctl.documents import from_json, from_yaml, read_json_lines, read_yaml
+from rotctl.errors import InputError
+from rotctl.listing import conf_dir, shipped
+
+NO_TEXT = "a key is no text; put it in quotes"
+
+
+def refused(text):
+    with pytest.raises(InputError) as caught:
+        from_yaml("f", text)
+    return str(caught.value).removeprefix("f:")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("title: " + "9" * 5000, "1: a number has more than 40 digits"),
+        ("title: 0x" + "f" * 5000, "1: a number has more than 40 digits"),
+        ("\na: " + "[" * 3000, "2: nested more than 12 deep"),
+        ("a: " + "[" * 12 + "]" * 12, "1: nested more than 12 deep"),
+        ("- " * 100_000, "1: nested more than 12 deep"),
+        ("a: &x [1]\nb: *x", "2: has an alias; write it out"),
+        ("a: !!python/object/apply:os.system [x]", "1: has a tag; write plain values"),
+        ("a: !!timestamp 2026-13-45", "1: has a tag; write plain values"),
+        ("a: !!binary aGk=", "1: has a tag; write plain values"),
+        ("a: 1\nb: 2\na: 3", "3: a key comes twice"),
+        ("? [a]\n: 1", f"1: {NO_TEXT}"),
+        ("2: 1", f"1: {NO_TEXT}"),
+        ("no: 1", f"1: {NO_TEXT}"),
+        ('a: "\\e[31m"', "1: a text has a control character"),
+        ('"\\0": 1', "1: a text has a control character"),
+        ("a: \x1b", " is no YAML: it has a control character"),
+        ("a: 1\n---\nb: 2", "2: is no YAML: expected a single document in the stream, "
+         "but found another document"),
+        ("a: [1", "2: is no YAML: while parsing a flow sequence, did not find expected ',' or ']'"),
+    ],
+)  # fmt: skip
+def test_what_is_more_than_plain_yaml_is_one_line(text, message):
+    assert refused(text) == message
+
+
+@pytest.mark.parametrize(
+    ("text", "data"),
+    [
+        ("", None),
+        ("a: 2026-13-45", {"a": "2026-13-45"}),
+        ("a: 2026-01-02", {"a": "2026-01-02"}),
+        ("<<: {a: 1}", {"<<": {"a": 1}}),
+        ("[1, 0x10, -2.5, 1e3, yes, ~, x, 'no']", [1, 16, -2.5, "1e3", True, None, "x", "no"]),
+        ("[" * 12 + "]" * 12, [[[[[[[[[[[[]]]]]]]]]]]]),
+        (f"a: {'9' * 40}", {"a": int("9" * 40)}),
+        ("a: ü\U0001f938\u2028", {"a": "ü\U0001f938"}),
+    ],
+)  # fmt: skip
+def test_plain_yaml_is_read(text, data):
+    assert from_yaml("f", text) == data
+
+
+SECRETS = (
+    *("a: [secret", "secret: @secret", "%YAML secret", "a: *secret", "a: !secret 1"),
+    *("&secret a: [", "{secret: 1, secret: 2}", "'secret", "a: `secret", "secret: [1\nsecret: 2"),
+    *("%TAG !secret! x\n---\na: !other!x 1", "? secret: 1\n- secret"),
+)
+
+
+def test_no_message_repeats_what_is_in_the_file():
+    for text in SECRETS:
+        assert "secret" not in refused(text)
+
+
+def test_nor_does_one_of_the_parser_in_python():
+    """It is used where C's is missing, and quotes the text in its messages."""
+    script = (
+        "import yaml; del yaml.CSafeLoader; import sys\n"
+        "from rotctl import documents\n"
+        "for text in eval(sys.stdin.read()):\n"
+        "    try: print(documents.from_yaml('f', text))\n"
+        "    except documents.InputError as error: print(error, file=sys.stderr)"
+    )
+    finished = subprocess.run(
+        [sys.executable, "-c", script], input=repr(SECRETS), text=True, capture_output=True
+    )
+    assert (finished.returncode, finished.stdout) == (0, "")
+    assert finished.stderr.count("\n") == len(SECRETS)
+    assert "secret" not in finished.stderr
+
+
+def test_all_that_we_ship_is_plain_yaml():
+    paths = [*conf_dir().rglob("*.yaml"), *shipped("experiments").glob("*.yaml")]
+    assert len(paths) > 50
+    for path in paths:
+        assert read_yaml(path, linked=False) == yaml.safe_load(path.read_text()), path
+
+
+# ---------------------------------------------------------------- JSON
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("NaN", "NaN is no number"),
+        ('{"a": -Infinity}', "-Infinity is no number"),
+        ("1e400", "a number is too large"),
+        ("1" * 41, "a number has more than 40 digits"),
+        ("[" * 13 + "]" * 13, "nested more than 12 deep"),
+        ("[" * 100_000, "nested too deeply"),
+        ('{"a": 1, "a": 2}', "a key comes twice"),
+        ('{"a": "\\ud800"}', "a text has a control character"),
+        ('{"\\udfff": 1}', "a text has a control character"),
+        ('"\\u0000"', "a text has a control character"),
+        ("{", "Expecting property name enclosed in double quotes: line 1 column 2 (char 1)"),
+    ],
+)  # fmt: skip
+def test_what_is_more_than_plain_json_is_refused(text, message):
+    with pytest.raises(ValueError, match=r".") as caught:
+        from_json(text)
+    assert str(caught.value) == message
+
+
+def test_lines_are_read_one_by_one(tmp_path):
+    path = tmp_path / "a.jsonl"
+    path.write_text('{"a": "\u2028"}\n\nNaN\n[1]')
+    found = list(read_json_lines(path, linked=False))
+    assert found == [(1, {"a": "\u2028"}), (2, None), (3, None), (4, [1])]
+    path.write_text("1\n" * (documents.MOST_LINES + 1))
+    with pytest.raises(InputError) as caught:
+        list(read_json_lines(path, linked=False))
+    assert str(caught.value) == f"{path}: more than 500000 lines"
+    path.unlink()
+    os.mkfifo(path)
+    with pytest.raises(InputError) as caught:
+        list(read_json_lines(path, linked=False))
+    assert str(caught.value) == f"{path}: is no plain file"
