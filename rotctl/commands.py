@@ -15,11 +15,16 @@ def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
     from tqdm import tqdm
 
-    from rotctl.config import load
-    from rotctl.log import LOG_NAME
+    from rotctl.config import load, recorded
+    from rotctl.log import LOG_NAME, RunLog
     from rotctl.run import run
 
-    config = load(arguments.overrides)
+    if arguments.again is None:
+        config = load(arguments.overrides)
+    elif arguments.overrides:
+        raise InputError(f"--again repeats a run as it was: leave out {arguments.overrides[0]!r}")
+    else:
+        config = recorded(RunLog.open(_log_file(arguments.again)))
     steps = round(config.duration * config.controller.rate)
     with tqdm(
         total=steps,
@@ -153,6 +158,29 @@ def inspect(arguments: argparse.Namespace) -> int:
     log.verify()
     print("\nintegrity  complete, checksums match")
     return 0
+
+
+def verify(arguments: argparse.Namespace) -> int:
+    """Repeat a logged run, and say whether it came out the same."""
+    import json
+    from dataclasses import asdict
+
+    from tqdm import tqdm
+
+    from rotctl.log import RunLog
+    from rotctl.verify import repeat
+    from rotctl.wording import repeated
+
+    log = RunLog.open(_log_file(arguments.log))
+    with tqdm(
+        total=log.steps, desc="again", unit="step", leave=False, disable=None, delay=0.2
+    ) as bar:
+        found = repeat(log, bar.update)
+    if arguments.json:
+        print(json.dumps({"same": found.same, **asdict(found)}))
+    else:
+        print(printable(repeated(log, found)))
+    return 0 if found.same else 1
 
 
 def bench(arguments: argparse.Namespace) -> int:

@@ -23,8 +23,9 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.checked import adapter, brief, checked, clip, unknown_key
 from rotctl.control import ControllerSettings
-from rotctl.errors import InputError
+from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, require_plain
+from rotctl.log import RunLog
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Terrain
@@ -65,6 +66,18 @@ def load(overrides: list[str]) -> Config:
         InputError: one line that names the bad value and the valid choices or range.
     """
     return check(composed(overrides))
+
+
+def recorded(log: RunLog) -> Config:
+    """The config that a log holds, checked as any other.
+
+    Raises:
+        LogError: this rotctl cannot run it; one line that says why.
+    """
+    try:
+        return check(yaml.safe_load(log.config_yaml))
+    except InputError as error:
+        raise LogError(f"{log.path}: its config makes no run here: {error}") from None
 
 
 def composed(overrides: list[str]) -> dict[str, Any]:

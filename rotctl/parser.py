@@ -22,11 +22,12 @@ examples:
   rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
   rotctl plot runs/<run id>/run.h5 --out roll.pdf
   rotctl inspect runs/<run id>/run.h5             what is in a log
+  rotctl verify runs/<run id>/run.h5              run it again: the same bits?
   rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, a run of a sweep could not be run, or a claim got worse (rotctl report
---against), 2 bad input, 130 interrupted
+the solver broke down, a run of a sweep could not be run, a log does not repeat (rotctl verify),
+or a claim got worse (rotctl report --against), 2 bad input, 130 interrupted
 """
 OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
 
@@ -86,6 +87,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
     run.add_argument(
         "--out", type=_folder, default=Path("runs"), help="folder for runs [%(default)s]"
+    )
+    run.add_argument(
+        "--again",
+        type=Path,
+        metavar="RUN.h5",
+        help="the config of that log, instead of KEY=VALUE (rotctl verify compares, too)",
     )
     run.add_argument("--json", action="store_true", help="print the summary row as JSON on stdout")
     run.add_argument("--quiet", action="store_true", help="no progress, no notices")
@@ -173,6 +180,19 @@ def _parser() -> argparse.ArgumentParser:
     )
     inspect.add_argument("log", type=Path, metavar="RUN.h5")
     inspect.set_defaults(command=commands.inspect)
+
+    verify = chosen.add_parser(
+        "verify",
+        help="repeat a logged run: does it come out the same, to the last bit",
+        description="Simulate the config of a log once more and compare every dataset bit by bit. "
+        "Prints 'same bits', or the first step and datasets that part, whether control or physics "
+        "went another way there, and what of code, versions, processor and C library is not what "
+        "it was. Writes nothing. Exit code 0: the same; 1: not; 2: no log, or none that can be "
+        "run. docs/reproducibility.md says where the same bits can be expected.",
+    )
+    verify.add_argument("log", type=Path, metavar="RUN.h5")
+    verify.add_argument("--json", action="store_true", help="print it as JSON on stdout")
+    verify.set_defaults(command=commands.verify)
 
     bench = chosen.add_parser(
         "bench",
@@ -321,6 +341,7 @@ def _parser() -> argparse.ArgumentParser:
         command.set_defaults(parser=command, interrupted="an unfinished run leaves no log")
     for command in (importing, authoring):
         command.set_defaults(interrupted="an unfinished clip is not written")
+    verify.set_defaults(interrupted="nothing was compared")
     for command in (render, replay, plot, preview, report):
         command.set_defaults(interrupted="an unfinished picture is not written")
     for command in (sweep, tune):

@@ -72,7 +72,7 @@ def run(
     Raises:
         InputError: the config does not make a run, or the folder cannot be written.
     """
-    scenario = _built(config)
+    scenario = built(config)
     folder = out / scenario.run_id
     replaced = ""
     if not force and os.path.lexists(folder / LOG_NAME):
@@ -108,7 +108,7 @@ def make(config: Config) -> Made:
     Raises:
         InputError: the config does not make a run.
     """
-    return _simulated(_built(config), lambda: None)
+    return _simulated(built(config), lambda: None)
 
 
 def publish(made: Made, folder: Path) -> None:
@@ -122,8 +122,13 @@ def publish(made: Made, folder: Path) -> None:
         _write_summary(folder / SUMMARY_NAME, made.summary)
 
 
-def _built(config: Config) -> Scenario:
-    with _mujoco_warnings():
+def built(config: Config) -> Scenario:
+    """The parts of a run, without a word from MuJoCo.
+
+    Raises:
+        InputError: the config does not make a run.
+    """
+    with quiet():
         return build(config)
 
 
@@ -133,17 +138,11 @@ def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
     buffer, breakdown = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
     summary = summarise(scenario, buffer, breakdown, wall)
-    found = collect()
     log = encode_run(
         buffer,
         model_xml=scenario.model.mjcf,
         attributes={
-            **found,
-            "versions": {
-                **found["versions"],
-                "control_step": scenario.controller.backend,
-                "physics_step": scenario.stepper.backend,
-            },
+            **origin(scenario),
             "config": to_yaml(config),
             "run_id": scenario.run_id,
             "seed": config.seed,
@@ -152,6 +151,16 @@ def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
         },
     )
     return Made(summary, log)
+
+
+def origin(scenario: Scenario) -> dict[str, Any]:
+    """Code, versions and machine of a run, as they are in its log."""
+    found = collect()
+    steps = {
+        "control_step": scenario.controller.backend,
+        "physics_step": scenario.stepper.backend,
+    }
+    return {**found, "versions": {**found["versions"], **steps}}
 
 
 def in_memory(
@@ -165,7 +174,7 @@ def in_memory(
         The rows, and what broke down; empty if nothing did.
     """
     # What is not finite is found by the loop and told by the log, not by numpy on stderr.
-    with np.errstate(all="ignore"), _mujoco_warnings() as warnings:
+    with np.errstate(all="ignore"), quiet() as warnings:
         outcome = simulate(
             scenario.model,
             scenario.behaviour,
@@ -239,7 +248,7 @@ def stored(folder: Path, run_id: str) -> RunLog:
 
 
 @contextmanager
-def _mujoco_warnings() -> Iterator[list[str]]:
+def quiet() -> Iterator[list[str]]:
     """Collects MuJoCo's warnings, which else go to stdout and into a MUJOCO_LOG.TXT."""
     before = mujoco.get_mju_user_warning()
     heard: list[str] = []

@@ -17,7 +17,7 @@ from rotctl.log import RunLog
 
 RUN = ["run", "duration=0.5"]
 LONG = ["run", "duration=900"]
-COMMANDS = ("run", "render", "replay", "plot", "list", "show", "inspect", "bench")
+COMMANDS = ("run", "render", "replay", "plot", "list", "show", "inspect", "verify", "bench")
 
 
 @pytest.fixture
