@@ -93,7 +93,9 @@ def test_a_person_gets_a_readable_summary_and_the_path_of_the_log(cli, made):
     code, stdout, _ = cli(*RUN, "--out", out)
     lines = stdout.splitlines()
     assert code == 0
-    assert lines[0] == f"forward_roll_1  seed 0  run {row['run_id']}  success"
+    assert (
+        lines[0] == f"forward_roll_1  seed 0  run {row['run_id']}  FAILED: {row['failure_reason']}"
+    )
     assert lines[-1] == f"log        {log}"
     assert "commanded 1.30" in stdout
     assert "0 solver failures" in stdout
@@ -348,7 +350,7 @@ def test_inspect_shows_everything_and_checks_it(cli, made):
     out, row, log = made
     code, stdout, stderr = cli("inspect", log)
     assert (code, stderr) == (0, "")
-    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 2\n")
+    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 3\n")
     for text in ("trajectory/qpos", "[kg m2/s]", "outcome", "success", "git_commit", "machine"):
         assert text in stdout
     assert stdout.endswith("\nintegrity  complete, checksums match\n")

@@ -38,13 +38,13 @@ def test_other_commands(line, capsys):
 
 
 def test_the_python_example_reads_a_log(tmp_path, capsys):
-    assert main(["run", "duration=0.1", "--quiet", "--out", str(tmp_path)]) == 0
+    assert main(["run", "duration=3", "--quiet", "--out", str(tmp_path)]) == 0
     (path,) = tmp_path.glob("*/run.h5")
     (snippet,) = re.findall(r"```python\n(.*?)```", README, flags=re.DOTALL)
     snippet = re.sub(r'open\("[^"]*"\)', f"open({str(path)!r})", snippet)
     exec(snippet, {})  # our own README, not a stranger's file
     assert capsys.readouterr().out.startswith("True ")
-    assert RunLog.open(path).steps == 6
+    assert RunLog.open(path).steps == 180
 
 
 def test_make_calls_what_the_readme_says():

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.config import load
 from rotctl.errors import InputError
-from rotctl.metrics.rolling import measure
+from rotctl.metrics.rolling import failure_reason, measure
 from rotctl.run import in_memory
 from rotctl.scenario import build
 
@@ -33,7 +33,8 @@ def rolled(*overrides):
     buffer, complaint = in_memory(build(config))
     assert not complaint
     arrays, period = buffer.arrays(), 1.0 / config.controller.rate
-    return buffer, measure(arrays, config.criteria, config.behaviour.angular_velocity, period)
+    metrics = measure(arrays, config.criteria, config.behaviour.angular_velocity, period)
+    return buffer, metrics, failure_reason(metrics, config.criteria, config.duration)
 
 
 @pytest.mark.parametrize("row", ROWS)
@@ -41,14 +42,14 @@ def test_it_rolls(row):
     """From three of four starts: single ones fail now and then."""
     enough = 0
     for seed in range(4):
-        _, metrics = rolled(f"behaviour={row}", f"seed={seed}")
-        enough += metrics.revolutions >= LEAST and abs(metrics.heading_error_end) < 45.0
+        _, metrics, reason = rolled(f"behaviour={row}", f"seed={seed}")
+        enough += metrics.revolutions >= LEAST and not reason
     assert enough >= 3
 
 
 def test_the_shoulder_roll_goes_over_one_shoulder():
     """The back meets the ground left of the centre of mass, the loins meet it to the right."""
-    buffer, _ = rolled("behaviour=forward_roll_3")
+    buffer, _, _ = rolled("behaviour=forward_roll_3")
     model = build(load(["behaviour=forward_roll_3"])).model.mj
     force = np.linalg.norm(buffer.contacts.force_realised.astype(float), axis=2)
     beside = buffer.contacts.position[..., 1] - buffer.trajectory.com[:, 1, None]
@@ -62,7 +63,7 @@ def test_the_shoulder_roll_goes_over_one_shoulder():
 
 
 def test_the_log_roll_stays_long():
-    buffer, _ = rolled("behaviour=sideways_roll")
+    buffer, _, _ = rolled("behaviour=sideways_roll")
     joints = [str(np.char.decode(name)) for name in buffer.model.joint]
     knees = [7 + joints.index(f"knee_{side}") for side in "lr"]
     assert np.abs(buffer.trajectory.qpos[:, knees]).mean() < 0.35  # [rad]

@@ -1,14 +1,16 @@
-"""A rolling run in numbers: progress, stalls, heading, drift, torques, and whether it succeeded."""
+"""A rolling run in numbers: progress, ground, axis, line, torques, and whether it succeeded."""
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
+from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
 Arrays = Mapping[str, NDArray[np.generic]]
 
@@ -17,8 +19,18 @@ Arrays = Mapping[str, NDArray[np.generic]]
 class RollingCriteria:
     """Limits of a successful roll; see `conf/criteria/rolling.yaml`.
 
+    Those of a revolution hold for every one, wherever in the roll it is counted from.
+
     Attributes:
         stall_time: [s]; stall_progress: [rev].
+        revolution_time: that a revolution may take [s].
+        setback: that progress may fall back by [rev].
+        height: lowest and highest of the centre of mass above the ground below it [m].
+        penetration: deepest overlap with the ground [m].
+        flight_turn: of a revolution that may be turned without touching the ground [rev].
+        trunk_turn: that the trunk turns at least about its own axis in a revolution [rev].
+        axis: tilt of that axis against the rolling axis, over a revolution [deg].
+        travel: least and most that a revolution covers along the way [m].
         heading: [deg]; lateral_drift: [m].
         settle: [s] at the start left out of mean speeds.
     """
@@ -26,6 +38,14 @@ class RollingCriteria:
     name: str
     stall_time: Positive
     stall_progress: Positive
+    revolution_time: Positive
+    setback: Positive
+    height: Range
+    penetration: Positive
+    flight_turn: Positive
+    trunk_turn: Finite
+    axis: Positive
+    travel: Range
     heading: Positive
     lateral_drift: Positive
     settle: NonNegative
@@ -35,6 +55,8 @@ class RollingCriteria:
 @dataclass(frozen=True)
 class RollingMetrics:
     """What a log says of a roll.
+
+    What is said of a revolution is the worst of all; NaN if none was made.
 
     Attributes:
         duration: simulated time in the log [s].
@@ -46,6 +68,19 @@ class RollingMetrics:
         lateral_drift: largest |y| of the centre of mass from where it started [m].
         longest_stall: longest time without the criterion's progress [s].
         stalled_at: when that began [s].
+        slowest_revolution: longest time that a revolution took [s].
+        setback: furthest that progress fell back [rev].
+        height_least: lowest of the centre of mass above the ground below it [m].
+        height_most: highest of it [m].
+        penetration: deepest overlap with the ground [m].
+        flight_turn: largest part of a revolution turned while the ground gave no force [rev].
+        trunk_turn: least that the root body turned about the trunk's axis in a revolution [rev].
+        axis_error: largest tilt of the trunk's axis against the rolling axis, by the mean of its
+            cosine over a revolution [deg].
+        travel_least: shortest way along x, in the direction of progress, of a revolution [m].
+        travel_most: longest of it [m].
+        ground_force_p99: 99th percentile of the ground's force, mean over a control step [N].
+        ground_force_peak: its largest magnitude in a physics step [N].
         airborne: share of the time without a contact with the ground.
         torque_p99_fraction: 99th percentile of |torque| / limit over joints and time.
         solver_failures: control steps on which every solver failed.
@@ -59,9 +94,34 @@ class RollingMetrics:
     lateral_drift: float
     longest_stall: float
     stalled_at: float
+    slowest_revolution: float
+    setback: float
+    height_least: float
+    height_most: float
+    penetration: float
+    flight_turn: float
+    trunk_turn: float
+    axis_error: float
+    travel_least: float
+    travel_most: float
+    ground_force_p99: float
+    ground_force_peak: float
     airborne: float
     torque_p99_fraction: float
     solver_failures: int
+
+
+OF_REVOLUTIONS = (
+    "slowest_revolution",
+    "flight_turn",
+    "trunk_turn",
+    "axis_error",
+    "travel_least",
+    "travel_most",
+)
+_ZERO_AT_FIRST = ("duration", "revolutions", "lateral_drift", "longest_stall", "stalled_at")
+_NO_ROWS: dict[str, Any] = {each.name: math.nan for each in fields(RollingMetrics)}
+NO_ROWS = RollingMetrics(**_NO_ROWS | dict.fromkeys(_ZERO_AT_FIRST, 0.0) | {"solver_failures": 0})
 
 
 def measure(
@@ -74,33 +134,74 @@ def measure(
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
     """
-    com = np.asarray(log["trajectory/com"], dtype=float)
+    com = _floats(log, "trajectory/com")
     steps = len(com)
     if steps == 0:
-        nan = math.nan
-        return RollingMetrics(0.0, 0.0, nan, nan, nan, 0.0, 0.0, 0.0, nan, nan, 0)
-    angle = np.asarray(log["trajectory/angular_excursion"], dtype=float)[:, 1] / (2 * math.pi)
+        return NO_ROWS
+    angle = _floats(log, "trajectory/angular_excursion")[:, 1] / (2 * math.pi)
     direction = -1.0 if commanded < 0 else 1.0
+    progress = direction * angle
     first = min(round(criteria.settle / period), steps - 1)
     # A run that ends before it settled has no mean speeds.
     elapsed = (steps - 1 - first) * period or math.nan
-    axis = np.asarray(log["trajectory/trunk_axis"], dtype=float)[-round(1.0 / period) :]
-    heading = np.degrees([math.atan2(-x, y) for x, y, _ in axis.tolist()])
-    stall, stalled_at = longest_stall(direction * angle, criteria.stall_progress, period)
+    axis = _floats(log, "trajectory/trunk_axis")
+    last_second = axis[-round(1.0 / period) :]
+    heading = np.degrees([math.atan2(-x, y) for x, y, _ in last_second.tolist()])
+    stall, stalled_at = longest_stall(progress, criteria.stall_progress, period)
+    height = com[:, 2] - _floats(log, "trajectory/ground_height")
+    force = _floats(log, "contacts/ground_force")
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
     return RollingMetrics(
         duration=steps * period,
-        revolutions=float(direction * (angle[-1] - angle[0])),
+        revolutions=float(progress[-1] - progress[0]),
         angular_velocity_mean=float((angle[-1] - angle[first]) / elapsed),
         speed_mean=float((com[-1, 0] - com[first, 0]) / elapsed),
         heading_error_end=_median_angle(heading),
         lateral_drift=float(np.abs(com[:, 1] - com[0, 1]).max()),
         longest_stall=stall,
         stalled_at=stalled_at,
+        setback=setback(progress),
+        height_least=float(height.min()),
+        height_most=float(height.max()),
+        penetration=float(_floats(log, "contacts/penetration").max()),
+        ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
+        ground_force_peak=float(_floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=int(np.count_nonzero(np.asarray(log["solver/status"]) == 2)),
+        **_worst_revolutions(log, direction, progress, axis, period),
     )
+
+
+def _floats(log: Arrays, name: str) -> NDArray[np.float64]:
+    return np.asarray(log[name], dtype=float)
+
+
+def _worst_revolutions(
+    log: Arrays,
+    direction: float,
+    progress: NDArray[np.float64],
+    axis: NDArray[np.float64],
+    period: float,
+) -> dict[str, Any]:
+    """The members of `RollingMetrics` that are about revolutions."""
+    first, last = revolutions(progress)
+    if not len(last):
+        return dict.fromkeys(OF_REVOLUTIONS, math.nan)
+    x = direction * _floats(log, "trajectory/com")[:, 0]
+    turn = direction * turned_about(axis, _floats(log, "trajectory/qpos")[:, 3:7])
+    in_air = ~_floats(log, "contacts/ground_force").any(axis=1)
+    in_flight = np.where(in_air, np.diff(progress, append=progress[-1]), 0.0)
+    along = float((within(first, last, axis[:, 1]) / (last - first)).min())
+    travel = x[last] - x[first]
+    return {
+        "slowest_revolution": float((last - first).max() * period),
+        "flight_turn": float(within(first, last, in_flight).max()),
+        "trunk_turn": float((turn[last] - turn[first]).min()),
+        "axis_error": math.degrees(math.acos(min(max(along, -1.0), 1.0))),
+        "travel_least": float(travel.min()),
+        "travel_most": float(travel.max()),
+    }
 
 
 def _median_angle(degrees: NDArray[np.float64]) -> float:
@@ -111,34 +212,50 @@ def _median_angle(degrees: NDArray[np.float64]) -> float:
     return float(180.0 - (180.0 - median) % 360.0)
 
 
-def longest_stall(
-    progress: NDArray[np.float64], least: float, period: float
-) -> tuple[float, float]:
-    """Longest time [s] in which `progress` (n,) grew by less than `least`, and its start [s].
-
-    A stall begins when progress last exceeded its previous mark by `least`, and lasts until
-    it does so again, or the run ends.
-    """
-    mark, since = progress[0], 0
-    longest, begin = 0, 0
-    for i, value in enumerate(progress):
-        if value >= mark + least:
-            mark, since = value, i
-        if i - since > longest:
-            longest, begin = i - since, since
-    return longest * period, begin * period
-
-
 def failure_reason(metrics: RollingMetrics, criteria: RollingCriteria, wanted: float) -> str:
     """Why the run is no success; empty if it is one. `wanted` is the duration [s]."""
-    if metrics.duration < wanted - 1e-6:
-        return f"ended after {metrics.duration:.2f} of {wanted:g} s"
-    if metrics.solver_failures:
-        return f"every solver failed on {metrics.solver_failures} control steps"
-    if metrics.longest_stall >= criteria.stall_time:
-        return f"stalled for {metrics.longest_stall:.2f} s from t = {metrics.stalled_at:.2f} s"
-    if not abs(metrics.heading_error_end) < criteria.heading:
-        return f"heading off by {metrics.heading_error_end:.0f} deg at the end"
-    if not metrics.lateral_drift < criteria.lateral_drift:
-        return f"drifted {metrics.lateral_drift:.2f} m sideways"
-    return ""
+    m, c = metrics, criteria
+    rules = (
+        (m.duration >= wanted - 1e-6, f"ended after {m.duration:.2f} of {wanted:g} s"),
+        (m.solver_failures == 0, f"every solver failed on {m.solver_failures} control steps"),
+        (
+            m.height_least > c.height[0],
+            f"fell: centre of mass {m.height_least:.2f} m above the ground",
+        ),
+        (
+            m.longest_stall < c.stall_time,
+            f"stalled for {m.longest_stall:.2f} s from t = {m.stalled_at:.2f} s",
+        ),
+        (m.revolutions >= 1.0, f"no whole revolution: turned {m.revolutions:.2f} rev"),
+        (
+            m.slowest_revolution < c.revolution_time,
+            f"too slow: a revolution took {m.slowest_revolution:.2f} s",
+        ),
+        (m.setback < c.setback, f"rocked back by {m.setback:.2f} rev"),
+        (
+            m.flight_turn < c.flight_turn,
+            f"turned in the air: {m.flight_turn:.2f} of a revolution",
+        ),
+        (
+            m.height_most < c.height[1],
+            f"leapt: centre of mass {m.height_most:.2f} m above the ground",
+        ),
+        (m.penetration < c.penetration, f"sank into the ground by {m.penetration:.3f} m"),
+        (
+            m.trunk_turn > c.trunk_turn,
+            f"the trunk did not turn along: {m.trunk_turn:.2f} rev in a revolution",
+        ),
+        (m.axis_error < c.axis, f"off its axis by {m.axis_error:.0f} deg over a revolution"),
+        (
+            m.travel_least > c.travel[0],
+            f"turned on the spot: {m.travel_least:.2f} m in a revolution",
+        ),
+        (m.travel_most < c.travel[1], f"slid: {m.travel_most:.2f} m in a revolution"),
+        (
+            abs(m.heading_error_end) < c.heading,
+            f"heading off by {m.heading_error_end:.0f} deg at the end",
+        ),
+        (m.lateral_drift < c.lateral_drift, f"drifted {m.lateral_drift:.2f} m sideways"),
+    )
+    # What is not a number keeps no rule.
+    return next((reason for kept, reason in rules if not kept), "")
