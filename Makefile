@@ -7,6 +7,7 @@ PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 STAMP  := $(VENV)/.installed
+CODE   := $(VENV)/.compiled
 
 # uv makes the environment: a bare Debian has no venv module. One wheel, pinned by hash
 # (Linux x86-64 and arm64, macOS x86-64 and arm64: where MuJoCo runs and make is at home).
@@ -46,7 +47,7 @@ torture: setup ## the long tests: sweeps of 200 runs whose processes are killed 
 	$(BIN)/python -m pytest -m slow
 
 .PHONY: setup
-setup: $(STAMP) ## make .venv from requirements.lock (a second call does nothing)
+setup: $(STAMP) $(CODE) ## make .venv from requirements.lock (a second call does nothing)
 
 .PHONY: format
 format: setup ## lay the code out and sort the imports
@@ -106,7 +107,13 @@ $(UV):
 $(STAMP): requirements.lock pyproject.toml hatch_build.py $(wildcard rotctl/*/*.c) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --clear \
 		--python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV)
-	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes \
+	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes --compile-bytecode \
 		--build-constraints requirements.lock requirements.lock
 	$(UV) pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# Byte-code is made here, that of the packages above. A container or a read-only folder keeps none
+# that a run makes: each start would compile all it imports, which doubles its time.
+$(CODE): $(STAMP) $(shell find rotctl -name '*.py')
+	$(BIN)/python -m compileall -q rotctl
 	@touch $@

@@ -2,6 +2,7 @@
 
 import copy
 import os
+import pickle
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from browser import Browser, executable
 
+from rotctl import config
 from rotctl.config import load
 from rotctl.control import Decision, Desired
 from rotctl.control.pose import PoseTracker
@@ -19,6 +21,7 @@ from rotctl.mechanics.state import read
 from rotctl.report import gl
 from rotctl.scenario import build
 from rotctl.simulation.loop import simulate
+from rotctl.sweep import points
 
 SEEDS = (1, 2)
 SECONDS = 2.0  # each; 240 control steps in all
@@ -152,6 +155,25 @@ class World:
         for name, value in options.items():
             setattr(mj.opt, name, value)
         return mj
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _what_is_shipped_is_composed_once():
+    """Hydra takes a sixth of a second for a config, and tests ask for the same ones often."""
+    shipped, compose, known = config.conf_dir(), config.composed, {}
+
+    def composed(overrides):
+        if config.conf_dir() != shipped:
+            return compose(overrides)
+        key = tuple(overrides)
+        if key not in known:
+            known[key] = pickle.dumps(compose(overrides))
+        return pickle.loads(known[key])
+
+    with pytest.MonkeyPatch.context() as patch:
+        for module in (config, points):
+            patch.setattr(module, "composed", composed)
+        yield
 
 
 @pytest.fixture(scope="session")

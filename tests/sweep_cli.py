@@ -1,11 +1,40 @@
-"""The sweep command as a process that tests can watch, stop and kill."""
+"""Commands as processes that tests can watch, hold, stop and kill.
+
+A test never hopes that a process is quick or slow enough: it waits for something to be seen, or
+holds the process at a place until it has done what it wants to do.
+"""
 
 import os
 import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
+from threading import Timer
+
+PATIENCE = 600.0  # [s] guards against hangs alone: on the busiest machine nothing takes so long
+ENDLESS = "duration=3600"  # minutes of computing: whatever is done to it, is done in its midst
+
+_HELD = """
+import sys
+from pkgutil import resolve_name
+
+from rotctl.cli import main
+
+owner, name = sys.argv[1].rsplit(".", 1)
+owner = resolve_name(owner)
+real = getattr(owner, name)
+
+def held(*arguments):
+    result = real(*arguments)
+    print("held", flush=True)
+    sys.stdin.readline()
+    return result
+
+setattr(owner, name, held)
+sys.exit(main(sys.argv[2:]))
+"""
 
 
 def command(*arguments):
@@ -15,26 +44,74 @@ def command(*arguments):
 def finish(*arguments, **settings):
     """Run to the end: (exit code, stdout, stderr)."""
     done = subprocess.run(
-        command(*arguments), capture_output=True, text=True, timeout=120, **settings
+        command(*arguments), capture_output=True, text=True, timeout=PATIENCE, **settings
     )
     return done.returncode, done.stdout, done.stderr
 
 
-def start(*arguments):
+def start(*arguments, **settings):
+    """A command in a process of its own, which Ctrl-C reaches even where we ignore it."""
     return subprocess.Popen(
-        command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        command(*arguments),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell may have started us with SIGINT ignored, which children inherit.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        **settings,
     )
 
 
-def until(condition, seconds=60.0):
+class Held:
+    """A command that stops after each call of a function, until it is let go."""
+
+    def __init__(self, process):
+        self.process, self.pid = process, process.pid
+
+    def reached(self):
+        """Wait until it has stopped there."""
+        if self.process.stdout.readline() != "held\n":
+            raise AssertionError(f"it ended instead: {self.process.communicate()}")
+
+    def go_on(self):
+        """Let it go as far as the next call."""
+        self.process.stdin.write("\n")
+        self.process.stdin.flush()
+
+    def finish(self):
+        """Let it go for good: (exit code, stdout, stderr)."""
+        output = self.process.communicate()
+        return (self.process.returncode, *output)
+
+
+@contextmanager
+def held_after(place, *arguments):
+    """A command that stops after each call of the function at that place, such as `os.fsync`."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", _HELD, place, *map(str, arguments)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    guard = Timer(PATIENCE, process.kill)
+    guard.start()
+    try:
+        yield Held(process)
+    finally:
+        guard.cancel()
+        process.kill()
+        process.communicate()
+
+
+def until(condition):
     """Wait for a condition; what it returned."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        found = condition()
-        if found:
-            return found
+    end = time.monotonic() + PATIENCE
+    while not (found := condition()):
+        if time.monotonic() > end:
+            raise AssertionError(f"not within {PATIENCE:g} s")
         time.sleep(0.02)
-    raise AssertionError(f"not within {seconds:g} s")
+    return found
 
 
 def logs(out):

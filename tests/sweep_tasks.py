@@ -29,6 +29,22 @@ def die_once(marker):
     return "alive"
 
 
-def pid_after(seconds):
-    time.sleep(seconds)
+def pid(_):
     return os.getpid()
+
+
+def meet(folder):
+    """The pid, as soon as two processes are in this at once."""
+    (Path(folder) / str(os.getpid())).touch()
+    while len(os.listdir(folder)) < 2:
+        time.sleep(0.01)
+    return os.getpid()
+
+
+def endless(marker):
+    """Says that it has begun, and does not end; nothing to say: done at once."""
+    if marker is None:
+        return
+    Path(marker).touch()
+    while True:
+        time.sleep(60.0)

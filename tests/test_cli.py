@@ -6,17 +6,16 @@ import resource
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
 from rotctl.cli import main
 from rotctl.log import RunLog
 
 RUN = ["run", "duration=0.5"]
-LONG = ["run", "duration=900"]
 COMMANDS = ("run", "render", "replay", "plot", "list", "show", "inspect", "verify", "bench")
 
 
@@ -43,26 +42,14 @@ def made(tmp_path_factory):
     return out, json.loads((folder / "summary.json").read_text()), folder / "run.h5"
 
 
-def command(*arguments):
-    return [sys.executable, "-m", "rotctl", *map(str, arguments)]
-
-
-def shell(*arguments, **settings):
-    return subprocess.run(
-        command(*arguments), capture_output=True, text=True, timeout=120, **settings
-    )
-
-
 # ---------------------------------------------------------------- run
 
 
 def test_from_another_folder_json_is_all_there_is_on_stdout(tmp_path):
-    finished = shell(*RUN, "seed=3", "--out", "my runs/ü", "--json", cwd=tmp_path)
-    assert finished.returncode == 0
-    assert finished.stdout.count("\n") == 1
-    row = json.loads(finished.stdout)
+    code, stdout, stderr = finish(*RUN, "seed=3", "--out", "my runs/ü", "--json", cwd=tmp_path)
+    assert (code, stdout.count("\n"), stderr) == (0, 1, "")
+    row = json.loads(stdout)
     assert row["seed"] == 3
-    assert finished.stderr == ""
     folder = tmp_path / "my runs" / "ü" / row["run_id"]
     assert json.loads((folder / "summary.json").read_text()) == row
     assert os.listdir(tmp_path) == ["my runs"]
@@ -197,14 +184,16 @@ def test_a_file_where_the_folder_should_be(cli, tmp_path):
     assert stderr.endswith(": Not a directory\n")
 
 
-def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path):
-    def little_room():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
-
-    finished = shell(*RUN, "--out", tmp_path / "out", "--json", preexec_fn=little_room)
-    assert (finished.returncode, finished.stdout) == (2, "")
-    assert finished.stderr.startswith(f"rotctl: cannot write {tmp_path / 'out'}/")
-    assert finished.stderr.endswith("/run.h5: File too large\n")
+def test_a_full_disk_is_one_line_and_leaves_nothing(cli, tmp_path):
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+    try:
+        code, stdout, stderr = cli(*RUN, "--out", tmp_path / "out", "--json")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert (code, stdout) == (2, "")
+    assert stderr.startswith(f"rotctl: cannot write {tmp_path / 'out'}/")
+    assert stderr.endswith("/run.h5: File too large\n")
     assert os.listdir(tmp_path) == []
 
 
@@ -219,9 +208,9 @@ def test_a_config_that_makes_no_run_leaves_no_folder(cli, tmp_path, override):
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_leaves_nothing_and_exits_with_130(number, tmp_path):
-    process = _started(tmp_path)
+    process = _begun(tmp_path)
     process.send_signal(number)
-    stdout, stderr = process.communicate(timeout=60)
+    stdout, stderr = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert stdout == ""
     assert stderr == "rotctl: interrupted; an unfinished run leaves no log\n"
@@ -229,25 +218,16 @@ def test_an_interrupted_run_leaves_nothing_and_exits_with_130(number, tmp_path):
 
 
 def test_a_killed_run_leaves_no_log(tmp_path):
-    process = _started(tmp_path)
+    process = _begun(tmp_path)
     process.kill()
-    process.communicate(timeout=60)
+    process.communicate(timeout=PATIENCE)
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
-def _started(out):
-    """A long run in another process, seen to have begun."""
-    process = subprocess.Popen(
-        command(*LONG, "--out", out, "--json"),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        # A shell may have started us with SIGINT ignored, which children inherit.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
-    )
-    end = time.monotonic() + 60
-    while not os.listdir(out) and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.02)
+def _begun(out):
+    """A run in another process, seen to have begun, with minutes to go."""
+    process = start("run", ENDLESS, "--out", out, "--json")
+    until(lambda: os.listdir(out) or process.poll() is not None)
     assert process.poll() is None
     return process
 
@@ -262,14 +242,14 @@ def test_a_reader_that_has_seen_enough_is_no_error():
     process = subprocess.Popen(command("show"), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
     assert process.stderr.read() == b""
-    assert process.wait(timeout=60) == 0
+    assert process.wait(timeout=PATIENCE) == 0
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
 def test_a_full_stdout_is_one_line():
     with open("/dev/full", "w") as full:
         finished = subprocess.run(
-            command("list"), stdout=full, stderr=subprocess.PIPE, text=True, timeout=60
+            command("list"), stdout=full, stderr=subprocess.PIPE, text=True, timeout=PATIENCE
         )
     assert finished.returncode == 2
     assert finished.stderr == "rotctl: output: No space left on device\n"
@@ -280,7 +260,7 @@ def test_a_closed_stdout_is_no_error():
         command("list"),
         stderr=subprocess.PIPE,
         text=True,
-        timeout=60,
+        timeout=PATIENCE,
         preexec_fn=lambda: os.close(1),
     )
     assert (finished.returncode, finished.stderr) == (0, "")
@@ -288,9 +268,9 @@ def test_a_closed_stdout_is_no_error():
 
 def test_any_path_can_be_printed(tmp_path):
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "1"}
-    finished = shell(*RUN, "--out", "ü", cwd=tmp_path, env=environment)
-    assert finished.returncode == 0
-    assert "log        \\xfc/" in finished.stdout
+    code, stdout, _ = finish(*RUN, "--out", "ü", cwd=tmp_path, env=environment)
+    assert code == 0
+    assert "log        \\xfc/" in stdout
 
 
 # ---------------------------------------------------------------- help, list, show, inspect
@@ -305,7 +285,7 @@ def test_help_needs_no_heavy_import():
         "sys.exit(', '.join(heavy & set(sys.modules)) or 0)\n"
     )
     finished = subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=PATIENCE
     )
     assert (finished.returncode, finished.stderr) == (0, "")
     assert "exit codes: 0 simulated" in finished.stdout

@@ -4,6 +4,7 @@ import re
 from dataclasses import fields
 
 import pytest
+from here import swept
 
 from rotctl.cli import main
 from rotctl.errors import InputError
@@ -70,9 +71,8 @@ def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys
 
 
 def test_a_sweep_leaves_a_copy_of_its_experiment(tmp_path):
-    arguments = ["behaviour=forward_roll_1", "seed=0", "duration=0.5", "--jobs", "1", "--quiet"]
-    command = ["sweep", "+experiment=forward_roll_1", *arguments, "--out", str(tmp_path)]
-    assert main(command) == 0
+    one = ("behaviour=forward_roll_1", "seed=0", "duration=0.5")
+    swept(tmp_path, "+experiment=forward_roll_1", *one)
     (copy,) = copies(tmp_path).items()
     assert copy == ("forward_roll_1", tmp_path / "experiment-forward_roll_1.yaml")
     assert read(copy[1]) == experiment("forward_roll_1")

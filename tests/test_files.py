@@ -7,10 +7,12 @@ import sqlite3
 import struct
 
 import pytest
+from here import Here
 
 from rotctl import files
 from rotctl.cli import main
 from rotctl.errors import InputError
+from rotctl.sweep import engines
 from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space
 
@@ -143,7 +145,9 @@ def test_a_folder_found_by_itself_is_no_link(folder, tmp_path):
 
 
 @pytest.fixture
-def cli(capsys):
+def cli(capsys, monkeypatch):
+    monkeypatch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
+
     def call(*arguments):
         code = main([str(argument) for argument in arguments])
         return code, capsys.readouterr().err
@@ -151,7 +155,7 @@ def cli(capsys):
     return call
 
 
-SWEEP = ("duration=0.5", "--jobs", "1", "--quiet", "--out")
+SWEEP = ("duration=0.5", "--quiet", "--out")
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,6 @@
 """Captured motion to clips: a known roll written as a BVH file comes back as it was."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import mujoco
@@ -185,15 +183,15 @@ def captured(tmp_path_factory):
     return path
 
 
-def test_import_from_the_shell(captured, tmp_path):
-    command = [sys.executable, "-m", "rotctl", "import-motion", str(captured), "--out", "my roll"]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert (done.returncode, done.stderr) == (0, "")
-    lines = done.stdout.splitlines()
+def test_import_says_what_it_made_of_the_file(captured, tmp_path, cli, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, stdout, stderr = cli("import-motion", captured, "--out", "my roll")
+    assert (code, stderr) == (0, "")
+    lines = stdout.splitlines()
     assert re.fullmatch(r"forward roll, \d\.\d{3} to \d\.\d{3} s of the file", lines[0])
     assert [line.split()[0] for line in lines[2:8]] == ["pelvis"] * 2 + ["chest"] * 2 + ["head"] * 2
-    assert re.search(r"turns +0\.\d\d rev in 0\.\d\d s, 1\.0\d rev/s, 2\.\d\d m/s", done.stdout)
-    assert re.search(r"loop gap +0\.\d\d rad rms, 0\.\d\d rad at most \(\w+\), pelvis", done.stdout)
+    assert re.search(r"turns +0\.\d\d rev in 0\.\d\d s, 1\.0\d rev/s, 2\.\d\d m/s", stdout)
+    assert re.search(r"loop gap +0\.\d\d rad rms, 0\.\d\d rad at most \(\w+\), pelvis", stdout)
     assert lines[-1] == "clip       my roll.yaml"
     assert load_clip(str(tmp_path / "my roll.yaml")).name == "roll"
 

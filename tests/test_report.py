@@ -8,12 +8,13 @@ from html.parser import HTMLParser
 from xml.etree import ElementTree as Xml
 
 import pytest
+from here import swept
 from logs import changed
 
 from rotctl.cli import main
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.report.site import against, build
+from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
 from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
@@ -61,12 +62,18 @@ class Page(HTMLParser):
         return [attributes for name, attributes in self.tags if name == tag]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _short_filmstrips():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "FRAMES", 1)
+        yield
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A folder with a sweep and its experiment, to be looked at only."""
     folder = tmp_path_factory.mktemp("sweeps")
-    out = folder / "table"
-    assert main(["sweep", *ARGUMENTS, "--out", str(out), "--jobs", "1", "--quiet"]) == 0
+    out = swept(folder / "table", *ARGUMENTS)
     (out / "experiment-test.yaml").write_text(EXPERIMENT)
     return folder
 

@@ -5,17 +5,16 @@ import io
 import numpy as np
 import pytest
 from browser import PAGE_READY
+from here import swept
 from PIL import Image
 
-from rotctl.cli import main
 from rotctl.report.site.build import report
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     folder = tmp_path_factory.mktemp("sweeps")
-    arguments = ["behaviour=forward_roll_1", "seed=range(0,2)", "duration=1", "--jobs", "1"]
-    assert main(["sweep", *arguments, "--out", str(folder), "--quiet"]) == 0
+    swept(folder, "behaviour=forward_roll_1", "seed=range(0,2)", "duration=1")
     report(folder, folder / "site")
     return folder / "site"
 

@@ -104,7 +104,7 @@ def test_the_summary_is_about_this_run(config, finished):
     assert summary["speed_commanded"] == 1.2
     assert summary["solver_failures"] == 0
     assert 0 < summary["torque_p99_fraction"] <= 1
-    assert summary["real_time_factor"] > 1
+    assert summary["real_time_factor"] > 0
 
 
 def test_the_log_says_where_it_comes_from(config, finished):

@@ -8,6 +8,7 @@ import shutil
 import numpy as np
 import pandas as pd
 import pytest
+from here import swept
 from scipy.stats import norm
 
 from rotctl.cli import main
@@ -27,9 +28,7 @@ ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)",
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A sweep to be looked at only."""
-    out = tmp_path_factory.mktemp("made")
-    assert main(["sweep", *ARGUMENTS, "--out", str(out), "--jobs", "1", "--quiet"]) == 0
-    return out
+    return swept(tmp_path_factory.mktemp("made"), *ARGUMENTS)
 
 
 @pytest.fixture

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import h5py
 import pytest
-from sweep_cli import finish, logs, published
+from here import Here
+from sweep_cli import logs, published
 
 from rotctl.cli import main
 from rotctl.config import load
@@ -15,7 +16,7 @@ from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
 from rotctl.run import make, publish
-from rotctl.sweep.engines import Failure
+from rotctl.sweep import engines
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned
@@ -36,25 +37,6 @@ def cli(capsys):
     return call
 
 
-class Here:
-    """An engine without processes; `fails` has reasons by index."""
-
-    where, workers = "this process", 1
-
-    def __init__(self, fails=None):
-        self.fails = fails or {}
-        self.asked = 0
-
-    def map(self, task, items, retries):
-        for index, item in enumerate(items):
-            self.asked += 1
-            reason = self.fails.get(index)
-            yield index, Failure(reason) if reason else task(item)
-
-    def close(self):
-        pass
-
-
 def runs_of(*grid):
     return planned(points([[BRIEF, *grid]]))
 
@@ -69,10 +51,10 @@ def sweep(out, *grid, fails=None, strict=False):
 # ---------------------------------------------------------------- the command
 
 
-def test_a_sweep_and_the_same_again(tmp_path):
+def test_a_sweep_and_the_same_again(cli, tmp_path):
     out = tmp_path / "my sweep"
     arguments = ["sweep", BRIEF, "seed=range(0,3)", "--out", out, "--jobs", "2"]
-    code, stdout, stderr = finish(*arguments)
+    code, stdout, stderr = cli(*arguments)
     assert (code, stderr) == (0, f"3 runs to do in {out}; on 2 local processes\n")
     assert stdout == (
         f"3 runs: 3 succeeded, 0 did not, 0 failed to run\nnext       rotctl summarise '{out}'\n"
@@ -82,7 +64,7 @@ def test_a_sweep_and_the_same_again(tmp_path):
         row = json.loads(log.with_name("summary.json").read_text())
         assert row["run_id"] == log.parent.name
     before = published(out)
-    code, stdout, stderr = finish(*arguments)
+    code, stdout, stderr = cli(*arguments)
     assert (code, stderr) == (
         0,
         f"0 runs to do in {out}, 3 are there already; on 2 local processes\n",
@@ -231,10 +213,11 @@ def test_a_failed_run_is_a_row_until_it_is_done(tmp_path):
     assert not any(entry.failure for entry in read(tmp_path).values())
 
 
-def test_a_breakdown_of_the_physics_fails_each_time_it_is_asked_for(cli, tmp_path):
+def test_a_breakdown_of_the_physics_fails_each_time_it_is_asked_for(cli, tmp_path, monkeypatch):
+    monkeypatch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
     arguments = ["sweep", "duration=1", "start.speed_x=[1e12,1e12],[1,2]", "--out", tmp_path]
     for _ in range(2):
-        code, stdout, stderr = cli(*arguments, "--jobs", "1", "--quiet")
+        code, stdout, stderr = cli(*arguments, "--quiet")
         assert (code, stdout) == (1, "")
         assert stderr.startswith("1 run failed to run:\n")
         assert "start.speed_x=[1000000000000.0, 1000000000000.0]: physics broke down" in stderr

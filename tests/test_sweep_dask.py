@@ -10,10 +10,13 @@ from pathlib import Path
 
 import pytest
 import sweep_tasks
-from sweep_cli import finish, kill, logs, published, start, until
+from here import swept
+from sweep_cli import PATIENCE, finish, kill, logs, published, start, until
 
+from rotctl.cli import main
 from rotctl.errors import InputError, RotctlError
 from rotctl.log import RunLog
+from rotctl.sweep import cluster as cluster_module
 from rotctl.sweep.engines import Failure, make_engine
 
 pytest.importorskip("distributed", reason="Dask is not installed: pip install 'rotctl[cluster]'")
@@ -68,6 +71,14 @@ def worker(folder, address, name):
     )
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _patience():
+    """On a busy machine a scheduler is longer in coming than people would wait."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(cluster_module, "PATIENCE", PATIENCE)
+        yield
+
+
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
     """The address of a scheduler with two workers."""
@@ -112,11 +123,10 @@ def test_a_task_that_always_kills_is_a_failure(engine):
     assert results == [(0, Failure("the workers that tried it died"))]
 
 
-def test_the_runs_are_the_same_as_in_local_processes(cluster, tmp_path):
+def test_the_runs_are_the_same_as_they_are_here(cluster, tmp_path):
     grid = ["duration=1", "seed=range(0,3)"]
-    local, dask = tmp_path / "local", tmp_path / "dask"
-    assert finish("sweep", *grid, "--out", local, "--jobs", "1", "--quiet")[0] == 0
-    assert finish("sweep", *grid, "--out", dask, "--scheduler", cluster, "--quiet")[0] == 0
+    local, dask = swept(tmp_path / "local", *grid), tmp_path / "dask"
+    assert main(["sweep", *grid, "--out", str(dask), "--scheduler", cluster, "--quiet"]) == 0
     names = [log.parent.name for log in logs(local)]
     assert names == [log.parent.name for log in logs(dask)]
     for one, other in zip(logs(local), logs(dask), strict=True):
@@ -141,7 +151,7 @@ def test_a_killed_driver_leaves_the_rest_to_the_same_command(cluster, tmp_path):
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr("rotctl.sweep.cluster.PATIENCE", 1.0)
+    monkeypatch.setattr(cluster_module, "PATIENCE", 1.0)
     address = f"tcp://127.0.0.1:{free_port()}"
     with pytest.raises(InputError) as error:
         make_engine(None, address)
@@ -157,8 +167,9 @@ def test_a_scheduler_that_goes_away_is_said(tmp_path):
         worker(tmp_path, address, "only"),
         closing(make_engine(None, address)) as engine,
     ):
-        results = engine.map(sweep_tasks.pid_after, [0.0, 60.0], retries=0)
+        results = engine.map(sweep_tasks.endless, [None, tmp_path / "begun"], retries=0)
         next(results)
+        until((tmp_path / "begun").exists)
         kill(child.pid)
         with pytest.raises(RotctlError) as error:
             next(results)

@@ -6,14 +6,25 @@ import signal
 import sys
 
 import pytest
-from sweep_cli import finish, kill, logs, published, start, until, workers
+from sweep_cli import (
+    ENDLESS,
+    PATIENCE,
+    finish,
+    held_after,
+    kill,
+    logs,
+    published,
+    start,
+    until,
+    workers,
+)
 
 from rotctl.log import RunLog
 from rotctl.results.manifest import read
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 
-SLOW = "duration=50"  # takes a second: there is time to interfere
+WORKER_STARTED = "rotctl.sweep.local.Worker.start"
 
 
 def grid(count, duration="duration=3"):
@@ -57,7 +68,7 @@ def torture(out, count, kills, chance):
 
 
 def test_killed_again_and_again(tmp_path):
-    torture(tmp_path, 10, 3, random.Random(0))
+    torture(tmp_path, 8, 2, random.Random(0))
 
 
 @pytest.mark.slow
@@ -66,26 +77,29 @@ def test_two_hundred_runs_killed_ten_times(tmp_path):
 
 
 def test_a_killed_worker_is_replaced_and_its_run_retried(tmp_path):
-    driver = start("sweep", *grid(2, SLOW), "--out", tmp_path, "--jobs", "2", "--quiet")
-    (first, _) = until(lambda: len(workers(driver.pid)) == 2 and workers(driver.pid))
-    kill(first)
-    _, stderr = driver.communicate(timeout=120)
-    assert (driver.returncode, stderr) == (0, "")
+    arguments = ["sweep", *grid(2), "--out", tmp_path, "--jobs", "2", "--quiet"]
+    with held_after(WORKER_STARTED, *arguments) as driver:
+        driver.reached()
+        (first,) = until(lambda: workers(driver.pid))
+        kill(first)
+        code, _, stderr = driver.finish()
+    assert (code, stderr) == (0, "")
     whole(tmp_path, 2)
 
 
 def test_without_retries_it_is_a_failed_row_and_the_others_go_on(tmp_path):
-    arguments = ["sweep", *grid(3, SLOW), "--out", tmp_path, "--jobs", "1", "--quiet"]
-    driver = start(*arguments, "--retries", "0")
-    (only,) = until(lambda: workers(driver.pid))
-    kill(only)
-    _, stderr = driver.communicate(timeout=120)
-    assert driver.returncode == 1
+    arguments = ["sweep", *grid(3), "--out", tmp_path, "--jobs", "1", "--quiet"]
+    with held_after(WORKER_STARTED, *arguments, "--retries", "0") as driver:
+        driver.reached()
+        (only,) = until(lambda: workers(driver.pid))
+        kill(only)
+        code, _, stderr = driver.finish()
+    assert code == 1
     (failed,) = [entry for entry in read(tmp_path).values() if entry.failure]
     assert failed.failure == "its worker died: killed by SIGKILL"
     assert stderr == (
         "1 run failed to run:\n"
-        f"  {failed.run_id}  behaviour=forward_roll_1 seed=0 duration=50.0: {failed.failure}\n"
+        f"  {failed.run_id}  behaviour=forward_roll_1 seed=0 duration=3.0: {failed.failure}\n"
     )
     assert len(logs(tmp_path)) == 2
     assert finish(*arguments)[0] == 0
@@ -97,17 +111,22 @@ def test_without_retries_it_is_a_failed_row_and_the_others_go_on(tmp_path):
     "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)]
 )
 def test_an_interrupt_leaves_a_sweep_that_can_go_on(tmp_path, number):
-    driver = start("sweep", *grid(40), "--out", tmp_path, "--jobs", "2")
-    until(lambda: len(logs(tmp_path)) >= 3)
+    """While two runs are in their midst, three are done, and one is waiting."""
+    short, seeds = "duration=0.5", "seed=range(0,3)"
+    both = f"{short},{ENDLESS.partition('=')[2]}"
+    driver = start("sweep", both, seeds, "--out", tmp_path, "--jobs", "2")
+    until(lambda: len(logs(tmp_path)) == 3 or driver.poll() is not None)
     children = workers(driver.pid)
     os.kill(driver.pid, number)
-    _, stderr = driver.communicate(timeout=20)
+    _, stderr = driver.communicate(timeout=PATIENCE)
     assert driver.returncode == 130
     assert "Traceback" not in stderr
     assert stderr.splitlines()[-1] == ("rotctl: interrupted; the same command does what is left")
+    assert len(children) == 2
     assert not [pid for pid in children if os.path.exists(f"/proc/{pid}")]
     before = published(tmp_path)
-    assert 3 <= len(before) < 40
+    assert len(before) == 3
     assert not list(tmp_path.glob("**/*.part"))
-    assert finish("sweep", *grid(6), "--out", tmp_path, "--quiet")[0] == 0
+    assert finish("sweep", short, "seed=range(0,4)", "--out", tmp_path, "--quiet")[0] == 0
+    assert len(logs(tmp_path)) == 4
     assert before.items() <= published(tmp_path).items()

@@ -3,15 +3,12 @@
 import json
 import random
 import shutil
-import signal
 import sqlite3
-import subprocess
-import sys
-import time
 from dataclasses import replace
 
 import pytest
 import yaml
+from sweep_cli import held_after, kill
 
 from rotctl import config, listing
 from rotctl.cli import main
@@ -151,23 +148,17 @@ def test_an_interrupted_generation_keeps_what_was_finished(space, tmp_path, whol
     assert rest.done == 2 * 2 + 2 * (1 + len(found.candidates))
 
 
-def test_a_search_that_was_killed_goes_on_to_the_same_result(space, tmp_path, whole):
+def test_a_search_that_was_killed_goes_on_to_the_same_result(space, tmp_path, whole, capsys):
     folder = tmp_path / "killed"
-    command = [sys.executable, "-m", "rotctl", "tune", space, "--out", str(folder)]
-    command += ["--trials", "8", "--jobs", "1"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline and process.poll() is None:
-        if (folder / "study.db").exists() and _rows(folder) >= 2:
-            break
-        time.sleep(0.02)
-    process.send_signal(signal.SIGKILL)
-    process.communicate()
-    assert process.returncode == -signal.SIGKILL
-    assert 2 <= _rows(folder) < 8
-    again = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert again.returncode == 0, again.stderr
-    assert "to judge it" in again.stdout
+    arguments = ["tune", space, "--out", str(folder), "--trials", "8", "--jobs", "1"]
+    with held_after("rotctl.tune.history.History.add", *arguments) as process:
+        process.reached()
+        process.go_on()
+        process.reached()
+        kill(process.pid)
+    assert _rows(folder) == 2
+    assert main(arguments) == 0
+    assert "to judge it" in capsys.readouterr().out
     assert tried(reread(space, folder)) == tried(whole.trials)
 
 
@@ -180,11 +171,8 @@ def reread(space, folder):
 
 
 def _rows(folder):
-    try:
-        with sqlite3.connect(f"file:{folder / 'study.db'}?mode=ro", uri=True) as base:
-            return base.execute("select count(*) from trials where state='COMPLETE'").fetchone()[0]
-    except sqlite3.Error:  # not there yet, or busy
-        return 0
+    with sqlite3.connect(f"file:{folder / 'study.db'}?mode=ro", uri=True) as base:
+        return base.execute("select count(*) from trials where state='COMPLETE'").fetchone()[0]
 
 
 def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypatch):

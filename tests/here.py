@@ -1,0 +1,39 @@
+"""An engine without processes, for tests of what is done with its results."""
+
+import pytest
+
+from rotctl.cli import main
+from rotctl.sweep import engines
+from rotctl.sweep.engines import Failure, attempt
+
+
+class Here:
+    """Carries tasks out in this process, one by one.
+
+    Attributes:
+        fails: reasons by index, of tasks that shall fail.
+        asked: how many tasks it was given.
+    """
+
+    where, workers = "this process", 1
+
+    def __init__(self, fails=None):
+        self.fails = fails or {}
+        self.asked = 0
+
+    def map(self, task, items, retries):
+        for index, item in enumerate(items):
+            self.asked += 1
+            reason = self.fails.get(index)
+            yield index, Failure(reason) if reason else attempt(task, item)
+
+    def close(self):
+        pass
+
+
+def swept(out, *overrides):
+    """Make a sweep, as the command does, but in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
+        assert main(["sweep", *overrides, "--out", str(out), "--quiet"]) == 0
+    return out
