@@ -104,7 +104,7 @@ $(UV):
 # `sync` removes what the lock no longer names. antlr4-python3-runtime (of hydra-core) has no
 # wheel: --build-constraints holds its build tools to the lock's hashes too. rotctl itself goes
 # in last, as a link to this folder, built by the hatchling just installed.
-$(STAMP): requirements.lock pyproject.toml hatch_build.py $(wildcard rotctl/*/*.c) | $(UV)
+$(STAMP): requirements.lock pyproject.toml hatch_build.py $(wildcard rotctl/native/*.[ch]) | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --clear \
 		--python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV)
 	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes --compile-bytecode \

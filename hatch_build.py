@@ -14,11 +14,8 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-SOURCES = (
-    Path("rotctl/control/compiled.c"),
-    Path("rotctl/simulation/ground_forces.c"),
-    Path("rotctl/simulation/pgs.c"),
-)
+SOURCE = Path("rotctl/native/step.c")  # which includes the others
+LIBRARY = SOURCE.with_name("_native.so")
 SLOWER = "rotctl will use its numpy reference instead, which is a few times slower"
 # Sums keep their order and products are rounded before they are added: with that, every compiler
 # and every level of optimisation gives the same bits.
@@ -41,29 +38,39 @@ class CompileSources(BuildHookInterface):
                 f"no C compiler found: {SLOWER} (Debian: apt-get install gcc libc6-dev, then "
                 "install rotctl again)"
             )
-        built = [library for source in SOURCES if (library := self._compiled(compiler, source))]
-        if not built:
+        if not self._compiled(compiler):
             return
-        build_data["artifacts"].extend(built)
+        build_data["artifacts"].append(str(LIBRARY))
         build_data["pure_python"] = False
         platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
         build_data["tag"] = f"py3-none-{platform}"
 
-    def _compiled(self, compiler: str | None, source: Path) -> str:
-        """The library `_name.so` beside `name.c`; empty if it cannot be built."""
-        library = source.with_name(f"_{source.stem}.so")
-        (Path(self.root) / library).unlink(missing_ok=True)
+    def _compiled(self, compiler: str | None) -> bool:
+        """Build the library, if that can be done."""
+        root = Path(self.root)
+        (root / LIBRARY).unlink(missing_ok=True)
         if compiler is None:
-            return ""
+            return False
+        built_from = f'-DROTCTL_SOURCE="{_source_hash(root / SOURCE.parent)}"'
         headers = f"-I{_mujoco_headers()}"
-        command = [compiler, *FLAGS, headers, str(source), "-o", str(library), "-lm"]
-        done = subprocess.run(command, cwd=self.root, capture_output=True, text=True, check=False)
+        command = [compiler, *FLAGS, built_from, headers, str(SOURCE), "-o", str(LIBRARY), "-lm"]
+        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
         if done.returncode:
             self.app.display_warning(
-                f"{compiler} could not build {source}: {SLOWER}\n{done.stderr}"
+                f"{compiler} could not build {SOURCE}: {SLOWER}\n{done.stderr}"
             )
-            return ""
-        return str(library)
+        return not done.returncode
+
+
+def _source_hash(folder: Path) -> str:
+    """As the loader takes it, which refuses a library of other sources."""
+    spec = importlib.util.spec_from_file_location("source", folder / "source.py")
+    if spec is None or spec.loader is None:
+        raise RuntimeError(f"the build needs {folder / 'source.py'}")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found: str = module.source_hash(folder)
+    return found
 
 
 def _mujoco_headers() -> Path:

@@ -27,6 +27,8 @@ from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, require_plain
 from rotctl.log import RunLog
 from rotctl.mechanics.character import Character
+from rotctl.mechanics.disturbance import DisturbanceSettings
+from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.rolling import RollingCriteria
@@ -49,6 +51,8 @@ class Config:
     character: Character
     controller: ControllerSettings
     criteria: RollingCriteria
+    disturbance: DisturbanceSettings
+    excursion: ExcursionSettings
     physics: Physics
     start: StartSettings
     terrain: Terrain

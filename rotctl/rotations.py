@@ -22,6 +22,11 @@ def quaternion_from_rotation_vector(vector: Array) -> Array:
     return np.array([cos(0.5 * angle), scale * x, scale * y, scale * z])
 
 
+def about_up(angle: float) -> Array:
+    """Unit quaternion (4,) of a turn about world z [rad]."""
+    return np.array([cos(0.5 * angle), 0.0, 0.0, sin(0.5 * angle)])
+
+
 def multiply(left: Array, right: Array) -> Array:
     """Hamilton product of two quaternions (4,): first `right`, then `left`."""
     w, x, y, z = left.tolist()

@@ -17,10 +17,9 @@ from rotctl import files
 from rotctl.config import Config, to_yaml
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
-from rotctl.mechanics.excursion import Excursion
-from rotctl.mechanics.state import State
 from rotctl.metrics.rolling import RollingMetrics, failure_reason, measure
 from rotctl.scenario import Scenario, build
+from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
 
 SUMMARY_NAME = "summary.json"
@@ -166,7 +165,7 @@ def origin(scenario: Scenario) -> dict[str, Any]:
 def in_memory(
     scenario: Scenario,
     progress: Callable[[], object] = lambda: None,
-    stop: Callable[[State, Excursion], bool] = lambda state, now: False,
+    stop: Callable[[Moment], bool] = lambda moment: False,
 ) -> tuple[TrajectoryBuffer, str]:
     """Simulate, and write nothing; `progress` and `stop` are those of `simulate`.
 
@@ -176,11 +175,7 @@ def in_memory(
     # What is not finite is found by the loop and told by the log, not by numpy on stderr.
     with np.errstate(all="ignore"), quiet() as warnings:
         outcome = simulate(
-            scenario.model,
-            scenario.behaviour,
-            scenario.controller,
-            scenario.stepper,
-            scenario.start,
+            scenario,
             scenario.config.duration,
             scenario.config.physics.contact_capacity,
             progress,

@@ -12,6 +12,7 @@ from rotctl.config import Config, to_dict
 from rotctl.control import Controller
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
+from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.motion import load_clip
@@ -34,6 +35,7 @@ class Scenario:
     behaviour: Rolling
     controller: Controller
     stepper: Stepper
+    disturbance: Disturbance
     start: Start
     run_id: str
 
@@ -46,10 +48,13 @@ def build(config: Config) -> Scenario:
     """
     control = config.controller
     model = model_of(config)
+    behaviour = Rolling(config.behaviour, model, control, config.excursion)
+    generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
     return Scenario(
         config=config,
         model=model,
-        behaviour=Rolling(config.behaviour, model, control),
+        behaviour=behaviour,
+        disturbance=config.disturbance.make(model, behaviour.axes, generator),
         controller=Controller(model, control),
         stepper=_stepper(config.physics, model),
         start=starts.draw(

@@ -1,30 +1,34 @@
 """Continuous rolling, [Brown2013] section 6.
 
-A character rolls to +x, about +y. Which of the trunk's axes it keeps there makes the roll:
-`left` a forward roll, `right` a backward roll (facing -x), `head` a log roll (lying across).
+A character rolls along its heading, about the axis to its left. Which of the trunk's axes it keeps
+there makes the roll: `left` a forward roll, `right` a backward roll (its back to the way), `head` a
+log roll (lying across).
 
-In-plane (about the rolling axis y, along the rolling direction x) the angular velocity and
-the speed are held constant and their integrals are left free; out of plane, AE and AV are
-held at zero and the lateral and vertical velocities are damped. All of that is gains: a
-zero in-plane stiffness leaves the excursion and the distance free. The in-plane excursion
-that is wanted runs ahead at the commanded rate all the same; with a stiffness it is tracked,
-which the paper shows to fail. ROOT control, which fails too, compares the root's orientation
-and angular velocity with what is wanted of the whole body's.
+In-plane (about the rolling axis, along the way) the angular velocity and the speed are held
+constant and their integrals are left free; out of plane, AE and AV are held at zero and the
+lateral and vertical velocities are damped. All of that is gains, along forward, left and up: a zero
+stiffness of `linear` along the way leaves the distance free, one of `spin` about the rolling axis the
+excursion. What is wanted runs ahead at the commanded rates all the same; with a stiffness it is
+tracked, which the paper shows to fail. ROOT control, which fails too, compares the root's
+orientation and angular velocity with what is wanted of the whole body's.
 """
 
 import math
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.control import ControllerSettings, Desired
+from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.control import Command, ControllerSettings
+from rotctl.control.kinds import kind
+from rotctl.control.task import task
 from rotctl.errors import InputError
 from rotctl.linear import product
 from rotctl.mechanics import excursion
-from rotctl.mechanics.excursion import Excursion
+from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import (
@@ -37,11 +41,10 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array, cross, dot, rotate
+from rotctl.rotations import Array, about_up, advance, cross, dot, multiply, rotate
 from rotctl.settings import STRICT, Finite
 
-ROLLING_AXIS = np.array([0.0, 1.0, 0.0])
-ALONG = np.array([1.0, 0.0, 1.0])  # free along the way and up; the line of travel is y = 0
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True)
@@ -50,7 +53,7 @@ class Facing:
 
     Attributes:
         trunk_axis: (3,) what it rolls about, unit, in the trunk's frame of front, left, up.
-        orientation: (4,) of the trunk at phase 0, unit quaternion: takes that axis to +y.
+        orientation: (4,) of the trunk at phase 0, heading along +x: takes that axis to +y.
     """
 
     trunk_axis: Array
@@ -80,6 +83,7 @@ class RollingSettings:
         angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
         speed: commanded in-plane speed of the centre of mass [m/s].
         roll_about: the trunk's axis that is kept on the rolling axis, see `FACING`.
+        heading: of the way it rolls, from +x towards +y [deg].
         align_with_slope: whether that speed is along the slope (section 6) or level.
     """
 
@@ -88,6 +92,7 @@ class RollingSettings:
     roll_about: RollAbout
     angular_velocity: Finite
     speed: Finite
+    heading: Finite
     align_with_slope: Annotated[bool, Strict()]
     poses: Poses | None = None
     reference: ReferenceSettings | None = None
@@ -99,93 +104,128 @@ class RollingSettings:
             raise ValueError("give either poses or a reference, not both and not neither")
 
 
-class Rolling:
-    """The rolling behaviour of one run.
+@dataclass(frozen=True)
+class RollingMemory:
+    """What a roll remembers from one control step to the next.
 
     Attributes:
-        orientation: (4,) of the trunk at phase 0 on level ground, unit quaternion.
+        excursion: AE and phase.
+        origin: (3,) where the line of travel began [m].
+        angle: (3,) phi_0 [rad].
     """
+
+    excursion: Excursion
+    origin: Array
+    angle: Array
+
+
+class Rolling:
+    """The rolling behaviour of one run."""
+
+    tasks: ClassVar[tuple[str, ...]] = ("linear", "spin")
 
     def __init__(
         self,
         settings: RollingSettings,
         model: Model,
         control: ControllerSettings,
+        measured: ExcursionSettings,
     ) -> None:
-        """Prepare the poses.
+        """Prepare the poses and the part of the command that stays.
 
         Args:
-            control: how AE and the phase are measured, and how often.
+            control: gains, by the names of the tasks.
+            measured: how AE and the phase are measured.
+
+        Raises:
+            InputError: parts that do not fit together.
         """
         facing = FACING[settings.roll_about]
-        self.orientation = facing.orientation
+        heading = about_up(math.radians(settings.heading))
+        axes = np.array([rotate(heading, axis) for axis in np.eye(3)])  # forward, left, up
+        self.axes, self._left = axes, axes[1]
+        self._orientation = multiply(heading, facing.orientation)
+        self._front = rotate(self._orientation, np.array([1.0, 0.0, 0.0]))
         self._trunk_axis = facing.trunk_axis
-        self._name = control.excursion
-        self._correction_time = control.correction_time
-        self._phase_time = control.phase_time
+        self._measured = measured
         self._period = 1.0 / control.rate
-        self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * ROLLING_AXIS
-        self._slope = model.ground.slope
-        self._front = rotate(facing.orientation, np.array([1.0, 0.0, 0.0]))
+        self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * self._left
+        self._slope = math.atan(math.tan(model.ground.slope) * axes[0, 0])  # along the way
         along = self._slope if settings.align_with_slope else 0.0
-        self._velocity = settings.speed * np.array([np.cos(along), 0.0, np.sin(along)])
+        self._velocity = settings.speed * (math.cos(along) * axes[0] + math.sin(along) * UP)
         self._poses = _poses(settings, model)
+        gains = gains_of(control, self.tasks)
+        self._tasks = np.concatenate([task(kind(name).number, gains[name], axes) for name in gains])
+        self._tasks["velocity"] = self._velocity, self._angular_velocity
+        self._control, self._held_out = control, model.excluded
 
-    def pose(self, phase: float) -> Array:
-        """The pose (nu,) [rad] a run starts in at that phase."""
-        return self._poses.start(phase)  # the start's pitch is relative to the slope
+    def start(self, pitch: float) -> Placement:
+        """How a run starts at a pitch [rad] of the pelvis against the slope."""
+        tilt = (pitch - self._slope) * self._left
+        return Placement(advance(self._orientation, tilt), self._poses.start(pitch))
 
-    def begin(self, phase: float) -> Excursion:
-        """Excursion at the start: phi_0 is the pelvis's pitch against the slope."""
-        return excursion.start(phase, ROLLING_AXIS)
+    def begin(self, pitch: float, state: State) -> RollingMemory:
+        """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
+        line = state.momentum.com - dot(self._left, state.momentum.com) * self._left
+        now = excursion.start(pitch, self._left)
+        return RollingMemory(now, line, now.angle)
 
-    def trunk_axis(self, state: State) -> Array:
+    def advance(self, before: RollingMemory, state: State) -> RollingMemory:
+        """Memory now, from that of the previous control step."""
+        now = excursion.integrate(
+            before.excursion,
+            state.momentum.angular_velocity,
+            self._axis(state),
+            self._left,
+            self._period,
+            self._measured.correction_time,
+        )
+        turned = self._turned(state)
+        now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
+        if self._measured.measure == "root":
+            now = excursion.on_root(now, state.position[3:7], self._orientation)
+        return replace(before, excursion=now)
+
+    def command(self, memory: RollingMemory, state: State) -> Command:
+        """What rolling wants at this instant."""
+        now, measure = memory.excursion, self._measured.measure
+        pose_a, pose_b = self._poses.at(now.phase)
+        linear, spin = self._tasks
+        linear["target"][:3] = memory.origin + state.time * self._velocity
+        target = memory.angle + state.time * self._angular_velocity  # phi_hat
+        spin["target"][:3] = excursion.error(now, target, self._left, measure)
+        if measure == "root":  # AV that is off by as much as the root's velocity is
+            aside = state.momentum.angular_velocity - state.root_angular_velocity
+            spin["velocity"] = self._angular_velocity + aside
+        return Command(
+            tasks=self._tasks,
+            pose_a=pose_a,
+            pose_b=pose_b,
+            forward=self.axes[0],
+            pose=self._control.pose,
+            contact=self._control.contact,
+            supervisor=self._control.supervisor,
+            thresholds=self._control.thresholds,
+            held_out=self._held_out,
+        )
+
+    def signals(self, memory: RollingMemory, state: State) -> Signals:
+        """What the log keeps of it.
+
+        Forward, phase pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
+        """
+        now = memory.excursion
+        return Signals(angle=now.angle, phase=now.phase, axis=self._axis(state), axes=self.axes)
+
+    def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
         return product(state.trunk_axes, self._trunk_axis)
-
-    def advance(self, before: Excursion, state: State) -> Excursion:
-        """Excursion now, from that of the previous control step."""
-        now = excursion.integrate(
-            before,
-            state.momentum.angular_velocity,
-            self.trunk_axis(state),
-            ROLLING_AXIS,
-            self._period,
-            self._correction_time,
-        )
-        now = excursion.keep_phase(now, self._turned(state), self._period, self._phase_time)
-        if self._name == "root":
-            return excursion.on_root(now, state.position[3:7], self.orientation)
-        return now
-
-    def phase(self, now: Excursion) -> float:
-        """Phase theta [rad], turned from upright, or from lying on the back in a log roll.
-
-        Forward, pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
-        """
-        return now.phase
 
     def _turned(self, state: State) -> float:
         """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
         front = state.trunk_axes[:, 0]
-        across = dot(ROLLING_AXIS, cross(self._front, front))
+        across = dot(self._left, cross(self._front, front))
         return math.atan2(across, dot(self._front, front)) + self._slope
-
-    def desired(self, state: State, now: Excursion) -> Desired:
-        """What rolling wants at this instant."""
-        pose_a, pose_b = self._poses.at(self.phase(now))
-        target = self._angular_velocity * state.time  # phi_hat
-        velocity = self._angular_velocity
-        if self._name == "root":  # AV that is off by as much as the root's velocity is
-            velocity = velocity + state.momentum.angular_velocity - state.root_angular_velocity
-        return Desired(
-            com=ALONG * state.momentum.com,
-            com_velocity=self._velocity,
-            excursion_error=excursion.error(now, target, ROLLING_AXIS, self._name),
-            angular_velocity=velocity,
-            pose_a=pose_a,
-            pose_b=pose_b,
-        )
 
 
 def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:

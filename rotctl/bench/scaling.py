@@ -10,12 +10,13 @@ import numpy as np
 
 from rotctl import files
 from rotctl.config import Config, load
-from rotctl.control import Controller, Desired
+from rotctl.behaviours.rolling import Rolling
+from rotctl.control import Controller
 from rotctl.errors import InputError
 from rotctl.mechanics import model as models
 from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.state import State
+from rotctl.mechanics.state import read
 
 CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 24)  # the adult has no more than 25
 HINGES = (29, 37, 46, 58)
@@ -81,15 +82,16 @@ def plot(costs: list[Cost], out: Path) -> None:
 def _times(config: Config, model: Model, contacts: int) -> tuple[float, float]:
     """Microseconds of the compiled and the numpy step with that many contacts."""
     data = _lying(model, contacts)
+    behaviour = Rolling(config.behaviour, model, config.controller, config.excursion)
+    state = read(model, data)
+    command = behaviour.command(behaviour.begin(0.0, state), state)
     times = []
     for backend in ("compiled", "reference"):
         controller = Controller(model, replace(config.controller, backend=backend))
-        state = controller.read(data)
-        desired = _desired(model, state)
         least = np.inf
         for _ in range(TRIES):
             begin = time.perf_counter()
-            controller.decide(controller.read(data), desired, 0.5)
+            controller.decide(controller.read(data), command, 0.5)
             least = min(least, time.perf_counter() - begin)
         times.append(1e6 * least)
     return times[0], times[1]
@@ -116,18 +118,6 @@ def _lying(model: Model, contacts: int) -> mujoco.MjData:
     for i in ground[contacts:]:
         data.contact[int(i)].efc_address = -1
     return data
-
-
-def _desired(model: Model, state: State) -> Desired:
-    upright = np.zeros(model.mj.nu)
-    return Desired(
-        com=state.momentum.com.copy(),
-        com_velocity=np.array([1.2, 0.0, 0.0]),
-        excursion_error=np.zeros(3),
-        angular_velocity=np.array([0.0, 8.0, 0.0]),
-        pose_a=upright + 0.3,
-        pose_b=upright,
-    )
 
 
 def _model(config: Config, hinges: int) -> Model:

@@ -68,7 +68,7 @@ def _in_rounds(
             for i, one in enumerate(recorded):
                 restore(model, data, one)
                 begin = time.perf_counter()
-                decision = controller.decide(controller.read(data), one.desired, one.blend)
+                decision = controller.decide(controller.read(data), one.command, one.blend)
                 taken = 1e6 * (time.perf_counter() - begin)
                 times[name][i] = min(times[name][i], taken)
                 torques[name][i] = decision.torque

@@ -5,26 +5,33 @@ Times on a shared machine wander; ratios taken in one run, medians over repeats,
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import islice
 from statistics import median
 
-import mujoco
-
 from rotctl.config import load
+from rotctl.control import Controller
 from rotctl.log import TrajectoryBuffer
-from rotctl.qp import Problem, Solution, Solver
+from rotctl.qp import Problem, Solution, Solver, make_solver
 from rotctl.rotations import Array
 from rotctl.scenario import Scenario, build
-from rotctl.simulation.loop import INITIAL_BLEND, record
-from rotctl.simulation.start import place
+from rotctl.simulation.episode import Episode
+from rotctl.simulation.record import record
 
 SECONDS = 10.0  # simulated time of one repeat
 STAGES = ("physics", "kinematics", "assembly", "solve", "log")
+STAGE_OF = {  # of the episode's marks
+    "physics": "physics",
+    "state": "kinematics",
+    "command": "assembly",
+    "decision": "assembly",
+    "log": "log",
+}
 EXPLAINED = {
     "physics": "MuJoCo's steps, and a look at its warnings",
-    "kinematics": "reading state, contacts, momentum, excursion",
-    "assembly": "targets, pose torques, matrices of both passes",
+    "kinematics": "reading state, contacts, momentum",
+    "assembly": "excursion, targets, pose torques, matrices of both passes",
     "solve": "the quadratic programs of both passes",
     "log": "one row of every dataset",
 }
@@ -105,40 +112,27 @@ def _per_step(stage: str, one: Split) -> float:
 
 
 def roll(scenario: Scenario) -> Split:
-    """Simulate `SECONDS` with a clock between the stages; the same steps as the real loop."""
-    model, behaviour, stepper = scenario.model, scenario.behaviour, scenario.stepper
-    controller = scenario.controller
-    clock = TimedSolver(controller.chain[0][1])
-    controller.chain[0] = (controller.chain[0][0], clock)
-    data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, behaviour.orientation, behaviour.pose(scenario.start.pitch))
-    steps = round(SECONDS * controller.settings.rate)
-    buffer = TrajectoryBuffer.allocate(steps, model.mj.nq, model.mj.nv, model.mj.nu, 64)
-    now = behaviour.begin(scenario.start.pitch)
-    blend = INITIAL_BLEND
+    """Simulate `SECONDS` with a clock between the stages."""
+    settings = scenario.controller.settings
+    clock = TimedSolver(make_solver(settings.solver))
+    timed = replace(scenario, controller=Controller(scenario.model, settings, clock))
+    steps = round(SECONDS * settings.rate)
+    mj, tasks = scenario.model.mj, scenario.behaviour.tasks
+    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, 64, len(tasks))
     taken = Split(steps)
     seconds = taken.seconds
-    for i in range(steps):
-        t0 = time.perf_counter()
-        stepper.evaluate(data)
-        stepper.complaint(data)
-        t1 = time.perf_counter()
-        state = controller.read(data)
-        now = behaviour.advance(now, state)
-        t2 = time.perf_counter()
-        before = clock.seconds
-        decision = controller.decide(state, behaviour.desired(state, now), blend)
-        t3 = time.perf_counter()
-        blend = decision.blend
-        forces = stepper.advance(data, decision.torque, state.contacts)
-        t4 = time.perf_counter()
-        x, y, _ = state.momentum.com.tolist()
-        record(buffer, i, state, now, behaviour, decision, forces, model.ground.height(x, y))
-        t5 = time.perf_counter()
-        solve = clock.seconds - before
-        seconds["physics"] += (t1 - t0) + (t4 - t3)
-        seconds["kinematics"] += t2 - t1
-        seconds["assembly"] += t3 - t2 - solve
-        seconds["solve"] += solve
-        seconds["log"] += t5 - t4
+    since = time.perf_counter()
+
+    def mark(stage: str) -> None:
+        nonlocal since
+        now = time.perf_counter()
+        seconds[STAGE_OF[stage]] += now - since
+        since = now
+
+    for i, moment in enumerate(islice(Episode(timed, mark), steps)):
+        since = time.perf_counter()
+        record(buffer, i, moment)
+        mark("log")
+    seconds["assembly"] -= clock.seconds
+    seconds["solve"] += clock.seconds
     return taken

@@ -3,6 +3,6 @@
 from rotctl.control.controller import Controller
 from rotctl.control.decision import Decision
 from rotctl.control.settings import ControllerSettings
-from rotctl.control.targets import Desired
+from rotctl.control.task import Command
 
-__all__ = ["Controller", "ControllerSettings", "Decision", "Desired"]
+__all__ = ["Command", "Controller", "ControllerSettings", "Decision"]

@@ -9,14 +9,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from rotctl.control.terms import Terms
+from rotctl.control.stack import Stack
 from rotctl.linear import product
 from rotctl.qp import Problem, Solution, Solver, without_rows
 from rotctl.rotations import Array
 
 
 def solve_cone(
-    terms: Terms, solver: Solver, H: Array, f: Array, start: Array | None
+    stack: Stack, solver: Solver, H: Array, f: Array, start: Array | None
 ) -> tuple[Solution, Array, Array, Array]:
     """Solve min 1/2 x'Hx + f'x with forces in their cone, gamma in [0, 1], torques limited.
 
@@ -27,11 +27,11 @@ def solve_cone(
     Returns:
         The solver's account, the head, the forces (m, 3) along N, T1, T2 and [gamma].
     """
-    m = terms.contacts
+    m = stack.contacts
     head = len(f) - 3 * m - 1
-    limit = terms.torque_limit[:head]
+    limit = stack.torque_limit[:head]
     if solver.shape == "bounds":
-        spread = _edge_map(head, m, terms.friction)
+        spread = _edge_map(head, m, stack.friction)
         lower = np.concatenate((-limit, np.zeros(4 * m + 1)))
         upper = np.concatenate((limit, np.full(4 * m, np.inf), [1.0]))
         problem = without_rows(product(spread.T, H, spread), product(f, spread), lower, upper)
@@ -42,7 +42,7 @@ def solve_cone(
         normal[::3] = 0.0
         lower = np.concatenate((-limit, normal, [0.0]))
         upper = np.concatenate((limit, np.full(3 * m, np.inf), [1.0]))
-        rows = friction_rows(head, m, 1, terms.friction)
+        rows = friction_rows(head, m, 1, stack.friction)
         solution = solver.solve(
             Problem(H, f, lower, upper, rows, np.full(4 * m, -np.inf), np.zeros(4 * m)), start
         )

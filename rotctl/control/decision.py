@@ -19,7 +19,10 @@ class Decision:
         blend: gamma.
         used: (m,) True for contacts of the second pass.
         force: (m, 3) predicted contact forces, world axes [N]; zero where unused.
-        rates_wanted, rates_predicted: (6,) Ldot and Hdot [N, N m].
+        rates_wanted: (6,) Ldot and Hdot that the tasks of momenta ask for, 0 where none does.
+        rates_predicted: (6,) that the solution gives [N, N m].
+        error, wanted, predicted: (k, 3) of each task along its axes: how far it is from its
+            target, what its rows should give, and what they give.
         status: 0, SOLVED_BY_FALLBACK or POSE_ONLY.
         fallback: which link of the chain gave the torque, 0 = the chosen solver.
         iterations: of all passes.
@@ -33,6 +36,9 @@ class Decision:
     force: Array
     rates_wanted: Array
     rates_predicted: Array
+    error: Array
+    wanted: Array
+    predicted: Array
     status: int
     fallback: int
     iterations: int

@@ -10,7 +10,7 @@ the blend of eq. 7 keeps its meaning.
 import mujoco
 import numpy as np
 
-from rotctl.control.settings import Gains
+from rotctl.control.settings import PoseGains
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
@@ -19,25 +19,25 @@ from rotctl.rotations import Array
 class PoseTracker:
     """Stable PD torques towards several poses at once."""
 
-    def __init__(self, model: Model, gains: Gains, period: float) -> None:
-        """Keep the gains [1/s^2, 1/s] and a scratch space for the factorisation.
+    def __init__(self, model: Model, period: float) -> None:
+        """Keep a scratch space for the factorisation.
 
         Args:
             period: the torque is held for this long [s].
         """
         self._model = model
-        self._gains = gains
         self._period = period
         self._scratch = mujoco.MjData(model.mj)
 
-    def torques(self, state: State, poses: Array) -> Array:
+    def torques(self, state: State, poses: Array, gains: PoseGains) -> Array:
         """Torques (k, nu) [N m] towards poses (k, nu) [rad]."""
-        h, mj, scratch = self._period, self._model.mj, self._scratch
+        mj, scratch = self._model.mj, self._scratch
+        h = max(gains.horizon, self._period)
         joints = self._model.joints
         diagonal = self._model.diagonal[joints]
         inertia = state.data.M[diagonal] - self._model.armature
-        stiffness = self._gains.pose_stiffness * inertia
-        damping = self._gains.pose_damping * inertia
+        stiffness = gains.stiffness * inertia
+        damping = gains.damping * inertia
         velocity = state.velocity[joints]
         predicted = state.position[self._model.angles] + h * velocity
         explicit = stiffness * (poses - predicted) - damping * velocity

@@ -1,12 +1,11 @@
-"""The controller's numbers: weights, gains, supervisor thresholds; see `conf/controller/`."""
+"""The controller's numbers: gains and weights by objective, supervisor thresholds."""
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control.supervisor import SupervisorName, Thresholds
-from rotctl.mechanics.excursion import ExcursionName
 from rotctl.settings import STRICT, NonNegative, NonNegativeVector, Positive
 
 FormName = Literal["condensed", "literal"]
@@ -14,38 +13,53 @@ BackendName = Literal["compiled", "reference"]
 
 
 @validated(frozen=True, config=STRICT)
-class Weights:
-    """Weights of the objectives, for errors in N, N m and m/s.
+class TaskGains:
+    """How a task is pursued, each along its three axes.
 
     Attributes:
-        linear_momentum: on Ldot, [Brown2013] E_L [1/N^2].
-        angular_momentum: on Hdot in-plane, E_H [1/(N m)^2].
-        out_of_plane: factor on `angular_momentum` for the two out-of-plane axes [-].
-        pose: on the torques' distance from the blend, eq. 7 [1/(N m)^2].
-        contact_velocity: W_v of eq. 2 [1/(m/s)^2].
-        contact_force: on the contact forces, makes them unique [1/N^2].
-        blend: on the change of the blend, relative to the pose objective [-].
+        weight: on the squared error of its rows; see its kind in `rotctl.control.kinds` for
+            the unit. An axis of weight 0 is left out.
+        stiffness: [1/s2].
+        damping: [1/s].
     """
 
-    linear_momentum: NonNegative
-    angular_momentum: NonNegative
-    out_of_plane: NonNegative
-    pose: NonNegative
-    contact_velocity: NonNegative
-    contact_force: Positive
+    weight: NonNegativeVector
+    stiffness: NonNegativeVector
+    damping: NonNegativeVector
+
+
+@validated(frozen=True, config=STRICT)
+class PoseGains:
+    """How the poses are tracked, [Brown2013] eq. 6 and 7.
+
+    Attributes:
+        stiffness: K_s [1/s2]; damping: K_d [1/s].
+        horizon: both act as they will be so long ahead, at least one control period [s].
+        weight: on the torques' distance from the blend [1/(N m)2].
+        blend: on the rate of the blend gamma, relative to the pose objective [s2].
+    """
+
+    stiffness: NonNegative
+    damping: NonNegative
+    horizon: NonNegative
+    weight: NonNegative
     blend: Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Gains:
-    """Spring [1/s^2] and damping [1/s] gains of eq. 3, 4 (per world axis) and 6."""
+class ContactGains:
+    """How contacts are held: the W_v term of [Brown2013] eq. 2, in numbers free of the rate.
 
-    linear_stiffness: NonNegativeVector
-    linear_damping: NonNegativeVector
-    angular_stiffness: NonNegativeVector
-    angular_damping: NonNegativeVector
-    pose_stiffness: NonNegative
-    pose_damping: NonNegative
+    Attributes:
+        damping: a contact's velocity should fade at this rate [1/s], at most to zero in one
+            control period, which is the paper's wish.
+        weight: on the acceleration's distance from that [1/(m/s2)2].
+        force: on the contact forces, makes them unique [1/N2].
+    """
+
+    damping: Positive
+    weight: NonNegative
+    force: Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -59,10 +73,9 @@ class ControllerSettings:
         backend: `compiled` takes the C step where it serves (condensed boxqp) and is built;
             `reference` is the same mathematics in numpy.
         supervisor: inclusion test for contacts, see `rotctl.control.supervisor`.
-        excursion: how AE is measured, see `rotctl.mechanics.excursion`.
-        correction_time: of the `oriented` excursion [s].
-        phase_time: of the phase by which poses are looked up [s].
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
+        sees_disturbance: whether control knows of the forces from outside.
+        tasks: gains by the name of a behaviour's task.
     """
 
     name: str
@@ -72,10 +85,9 @@ class ControllerSettings:
     backend: BackendName
     supervisor: SupervisorName
     thresholds: Thresholds
-    excursion: ExcursionName
-    correction_time: Positive
-    phase_time: Positive
     friction: Positive
-    weights: Weights
-    gains: Gains
+    sees_disturbance: Annotated[bool, Strict()]
+    contact: ContactGains
+    pose: PoseGains
+    tasks: dict[str, TaskGains]
     description: str = ""

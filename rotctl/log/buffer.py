@@ -30,20 +30,26 @@ class TrajectoryBuffer:
 
     Attributes:
         trajectory: arrays of the group ``trajectory``, one attribute each.
+        command: arrays of the group ``command``.
         contacts: arrays of the group ``contacts``.
+        disturbance: arrays of the group ``disturbance``.
         solver: arrays of the group ``solver``.
         model: arrays of the group ``model``: one entry a joint, not one a step.
         events: (time [s], text) in the order of their arrival.
     """
 
     trajectory: Any
+    command: Any
     contacts: Any
+    disturbance: Any
     solver: Any
     model: Any
     events: list[tuple[float, str]] = field(default_factory=list)
 
     @classmethod
-    def allocate(cls, steps: int, nq: int, nv: int, nu: int, capacity: int) -> "TrajectoryBuffer":
+    def allocate(
+        cls, steps: int, nq: int, nv: int, nu: int, capacity: int, tasks: int
+    ) -> "TrajectoryBuffer":
         """Allocates every array whose size is known before the run.
 
         Args:
@@ -52,11 +58,19 @@ class TrajectoryBuffer:
             nv: size of ``qvel``.
             nu: size of ``ctrl``.
             capacity: recorded contacts a step.
+            tasks: of the behaviour.
 
         Raises:
             InputError: a size is negative, or the log would be larger than a reader accepts.
         """
-        sizes = {"steps": steps, "nq": nq, "nv": nv, "nu": nu, "capacity": capacity}
+        sizes = {
+            "steps": steps,
+            "nq": nq,
+            "nv": nv,
+            "nu": nu,
+            "capacity": capacity,
+            "tasks": tasks,
+        }
         for name, size in sizes.items():
             if size < 0:
                 raise InputError(f"{name} must be >= 0, got {size}")
@@ -132,7 +146,9 @@ def _from_arrays(
 ) -> TrajectoryBuffer:
     return TrajectoryBuffer(
         trajectory=_record("trajectory", arrays),
+        command=_record("command", arrays),
         contacts=_record("contacts", arrays),
+        disturbance=_record("disturbance", arrays),
         solver=_record("solver", arrays),
         model=_record("model", arrays),
         events=events,

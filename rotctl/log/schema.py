@@ -30,7 +30,7 @@ class DatasetSpec:
     Attributes:
         dtype: NumPy type string; plain ``"S"`` stands for bytes of any one fixed length.
         shape: dimensions, each a number or one of ``steps``, ``nq``, ``nv``, ``nu``,
-            ``capacity``, ``events``.
+            ``capacity``, ``events``, ``tasks``.
         unit: SI unit; ``"1"`` where there is none.
         description: one line for the reader of the file.
         fill: value of the rows and slots that nobody has written.
@@ -53,6 +53,10 @@ def _per_step(
 
 def _per_contact(unit: str, description: str) -> DatasetSpec:
     return DatasetSpec("<f4", ("steps", "capacity", 3), unit, description)
+
+
+def _per_task(unit: str, description: str, *row: int) -> DatasetSpec:
+    return DatasetSpec("<f8", ("steps", "tasks", *row), unit, description, since=3)
 
 
 _SLOTS = ("steps", "capacity")
@@ -88,6 +92,21 @@ SCHEMA: dict[str, DatasetSpec] = {
     "trajectory/blend": _per_step("1", "weight between the torques of the two pose objectives"),
     "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
     "trajectory/trunk_axis": _per_step("1", "the trunk's mean axis that it rolls about, unit", 3),
+    "command/axes": _per_step(
+        "1", "the behaviour's forward, left and up as rows, world", 3, 3, since=3
+    ),
+    "command/stage": DatasetSpec(
+        "<i4", ("steps",), "1", "number of the behaviour's stage", since=3
+    ),
+    "command/target": _per_task("m, rad", "of each task, see its kind; world axes", 4),
+    "command/velocity": _per_task("m/s, rad/s", "that each task asks for; world axes", 3),
+    "command/error": _per_task("m, rad", "to the target, along the task's axes", 3),
+    "command/wanted": _per_task(
+        "N, N m, m/s2, rad/s2", "what the task's rows should give, along its axes", 3
+    ),
+    "command/predicted": _per_task(
+        "N, N m, m/s2, rad/s2", "what the controller's solution gives them", 3
+    ),
     "contacts/count": DatasetSpec(
         "<i4", ("steps",), "1", "contacts that the controller saw; may exceed the recorded capacity"
     ),
@@ -118,6 +137,9 @@ SCHEMA: dict[str, DatasetSpec] = {
     "contacts/penetration": _per_step(
         "m", "deepest overlap with the ground in a physics step of the control step", since=3
     ),
+    "disturbance/wrench": _per_step(
+        "N, N m", "force and moment from outside about the centre of mass", 6, since=3
+    ),
     "solver/status": DatasetSpec(
         "i1",
         ("steps",),
@@ -134,6 +156,7 @@ SCHEMA: dict[str, DatasetSpec] = {
     "events/time": DatasetSpec("<f8", ("events",), "s", "simulated time of the event"),
     "events/text": DatasetSpec(f"S{EVENT_BYTES}", ("events",), "text", "what happened, UTF-8"),
     "model/joint": DatasetSpec("S64", ("nu",), "text", "name of each actuated joint, UTF-8"),
+    "model/task": DatasetSpec("S64", ("tasks",), "text", "name of each task, UTF-8", since=3),
     "model/torque_limit": DatasetSpec("<f8", ("nu",), "N m", "largest torque of each joint"),
     MODEL_PATH: DatasetSpec("S", (), "text", "self-contained MJCF of the simulated model, UTF-8"),
 }

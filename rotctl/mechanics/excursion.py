@@ -23,10 +23,29 @@ from math import pi, tau
 from typing import Literal
 
 import numpy as np
+from pydantic.dataclasses import dataclass as validated
 
 from rotctl.rotations import Array, advance, cross, dot, multiply, rotate, rotation_between
+from rotctl.settings import STRICT, Positive
 
 ExcursionName = Literal["oriented", "integral", "root"]
+
+
+@validated(frozen=True, config=STRICT)
+class ExcursionSettings:
+    """How AE and the phase are measured.
+
+    Attributes:
+        measure: see above.
+        correction_time: of the `oriented` excursion's pull towards the trunk [s].
+        phase_time: of the phase's pull towards the trunk [s].
+    """
+
+    name: str
+    measure: ExcursionName
+    correction_time: Positive
+    phase_time: Positive
+    description: str = ""
 
 
 @dataclass(frozen=True)

@@ -106,10 +106,10 @@ def build(
             f"character {character.name!r} on terrain {terrain.name!r} does not compile: {reason}"
         ) from None
     _check(mj, character)
-    trunk = np.array([_body_id(mj, name, "character.trunk") for name in character.trunk])
+    trunk = np.array([body_id(mj, name, "character.trunk") for name in character.trunk])
     excluded = np.zeros(mj.nbody, dtype=bool)
     for name in character.exclude_from_control:
-        excluded[_body_id(mj, name, "character.exclude_from_control")] = True
+        excluded[body_id(mj, name, "character.exclude_from_control")] = True
     hinges = mj.actuator_trnid[:, 0]
     joints = slice(ROOT_DOFS, ROOT_DOFS + mj.nu)
     return Model(
@@ -182,7 +182,12 @@ def lowest_and_highest(
     return float((z - reach)[chosen].min()), float((z + reach)[chosen].max())
 
 
-def _body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
+def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
+    """MuJoCo's id of a body of the character.
+
+    Raises:
+        InputError: there is none of that name; `key` names it.
+    """
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
     if number < 1:  # 0 is the world
         names = ", ".join(mj.body(int(i)).name for i in np.flatnonzero(is_character(mj)))

@@ -20,6 +20,9 @@ class State:
         time: [s].
         position: (nq,) generalised position [m, quaternion, rad].
         velocity: (nv,) generalised velocity [m/s, rad/s].
+        bias: (nv,) C of M qddot + C = S' tau + J' lambda [N, N m]: Coriolis, centrifugal and
+            gravity forces less the joints' passive ones, and less those from outside where
+            control knows of them.
         momentum: rotation indices and centre of mass.
         contacts: contacts with the ground.
         trunk_axes: (3, 3) columns are the trunk's mean front, left and up, each unit, world.
@@ -30,18 +33,11 @@ class State:
     time: float
     position: Array
     velocity: Array
+    bias: Array
     momentum: Momentum
     contacts: Contacts
     trunk_axes: Array
     data: mujoco.MjData
-
-    @property
-    def bias(self) -> Array:
-        """C of M qddot + C = S' tau + J' lambda (nv,) [N, N m].
-
-        Coriolis, centrifugal and gravity forces less the joints' passive ones.
-        """
-        return np.asarray(self.data.qfrc_bias - self.data.qfrc_passive)
 
     @property
     def root_angular_velocity(self) -> Array:
@@ -55,15 +51,31 @@ class State:
         return solved
 
 
-def read(model: Model, data: mujoco.MjData) -> State:
-    """Read the state; positions and velocities must have been evaluated (`mj_step1`)."""
+def read(model: Model, data: mujoco.MjData, sees_disturbance: bool = False) -> State:
+    """Read the state; positions and velocities must have been evaluated (`mj_step1`).
+
+    Args:
+        sees_disturbance: whether the bias knows of pushes and of a fluid.
+    """
     axes = (data.xmat[model.trunk] * model.trunk_weights).sum(axis=0).reshape(3, 3)
     return State(
         time=data.time,
         position=data.qpos.copy(),
         velocity=data.qvel.copy(),
+        bias=_bias(model.mj, data, sees_disturbance),
         momentum=read_momentum(model.mj, data),
         contacts=read_contacts(model.mj, data, model.touch, model.look_ahead),
         trunk_axes=axes / np.sqrt((axes**2).sum(axis=0)),
         data=data,
     )
+
+
+def _bias(mj: mujoco.MjModel, data: mujoco.MjData, sees_disturbance: bool) -> Array:
+    bias = data.qfrc_bias - data.qfrc_passive
+    if not sees_disturbance:
+        return np.asarray(bias + data.qfrc_fluid)
+    pushed = np.zeros(mj.nv)
+    for body in np.flatnonzero(data.xfrc_applied.any(axis=1)).tolist():
+        force, moment = data.xfrc_applied[body].reshape(2, 3)
+        mujoco.mj_applyFT(mj, data, force, moment, data.xipos[body], body, pushed)
+    return np.asarray(bias - pushed)

@@ -7,19 +7,20 @@ that the mean forces always sum up to the momentum that the ground gave.
 """
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 from typing import Protocol
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.errors import RotctlError
 from rotctl.mechanics.contacts import Contacts, read_contacts, realised_forces
+from rotctl.native import library
 from rotctl.rotations import Array
 
-LIBRARY = Path(__file__).with_name("_ground_forces.so")
 SLOTS = 1024  # as in ground_forces.c; what a log row can hold at most
 
 
@@ -156,7 +157,7 @@ class Compiled:
 
     def __init__(self, mj: mujoco.MjModel) -> None:
         """For the first tree of `mj` as the character."""
-        self._add = library().rotctl_ground_add  # type: ignore[union-attr]
+        self._add = _function()
         self._mj = mj  # keeps what the address points to
         self._sums = _Sums()
         self._model, self._address = mj._address, ctypes.addressof(self._sums)
@@ -203,14 +204,13 @@ class Compiled:
 
 
 @lru_cache(maxsize=1)
-def library() -> ctypes.CDLL | None:
-    """The built library; None where there is none, or it was built for other code or MuJoCo."""
-    try:
-        found = ctypes.CDLL(str(LIBRARY))
-        layout, version = found.rotctl_ground_layout(), found.rotctl_ground_mujoco_version()
-    except (OSError, AttributeError):
-        return None
-    found.rotctl_ground_add.argtypes = [_pointer] * 3
-    found.rotctl_ground_add.restype = None
-    fits = layout == ctypes.sizeof(_Sums) and version == mujoco.mj_version()
-    return found if fits else None
+def _function() -> Callable[[int, int, int], None]:
+    found = library()
+    if found is None:
+        raise RotctlError("the compiled sums of ground forces are not built")
+    theirs, ours = found.rotctl_ground_size(), ctypes.sizeof(_Sums)
+    if theirs != ours:
+        raise RotctlError(f"the compiled sums of ground forces are of {theirs} bytes, not {ours}")
+    function: Callable[[int, int, int], None] = found.rotctl_ground_add
+    function.argtypes, function.restype = [_pointer] * 3, None  # type: ignore[attr-defined]
+    return function

@@ -20,16 +20,13 @@ from rotctl.linear import product
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
+from rotctl.native.library import NOT_BUILT, library
 from rotctl.rotations import Array
 from rotctl.simulation import pgs
 from rotctl.simulation.ground_forces import GroundForces, ground_forces
 from rotctl.simulation.pgs import Impulses, Rows, Solve
 from rotctl.simulation.stepping import trouble
 
-NOT_BUILT = (
-    "the compiled contact solver is not built, using its numpy reference, which is much slower; "
-    "install a C compiler (Debian: apt-get install gcc libc6-dev), then rotctl again"
-)
 LIMIT = mujoco.mjtConstraint.mjCNSTR_LIMIT_JOINT
 
 
@@ -50,10 +47,11 @@ class LockstepStepper:
         self._forces = ground_forces(model.mj)
         self._periods = 0
         wanted = settings.backend == "compiled"
-        compiled = wanted and pgs.library() is not None
+        compiled = wanted and library() is not None
         self._solve: Solve = pgs.solve_compiled if compiled else pgs.solve
         self.backend = f"lockstep {'compiled' if compiled else 'reference'}"
-        self.notice = NOT_BUILT if wanted and not compiled else ""
+        missing = "the compiled contact solver " + NOT_BUILT.format(slower="much")
+        self.notice = missing if wanted and not compiled else ""
         self.solved: list[Impulses] = []
 
     def evaluate(self, data: mujoco.MjData) -> None:

@@ -13,15 +13,14 @@ import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.errors import RotctlError
+from rotctl.native import library
 from rotctl.rotations import Array
 
-LIBRARY = Path(__file__).with_name("_pgs.so")
-INTERFACE = 3  # of pgs.c
 NO_NORMAL = -1
 
 
@@ -99,7 +98,7 @@ def solve_compiled(rows: Rows, sweeps: int, tolerance: float, follow: float) -> 
     p, bound, w = np.zeros((3, n))
     arrays = (rows.A, rows.b, rows.normal, rows.friction)
     kept = [np.ascontiguousarray(array) for array in arrays]
-    done = library().rotctl_pgs(  # type: ignore[union-attr]
+    done = _function()(
         n,
         *(array.ctypes.data for array in kept),
         sweeps,
@@ -114,18 +113,16 @@ def solve_compiled(rows: Rows, sweeps: int, tolerance: float, follow: float) -> 
 
 
 @lru_cache(maxsize=1)
-def library() -> ctypes.CDLL | None:
-    """The built library; None where there is none, or it was built from other source."""
-    try:
-        found = ctypes.CDLL(str(LIBRARY))
-        interface = found.rotctl_pgs_interface()
-    except (OSError, AttributeError):
-        return None
-    found.rotctl_pgs.argtypes = [
+def _function() -> Callable[..., int]:
+    found = library()
+    if found is None:
+        raise RotctlError("the compiled contact solver is not built")
+    function: Callable[..., int] = found.rotctl_pgs
+    function.argtypes = [  # type: ignore[attr-defined]
         ctypes.c_int,
         *[ctypes.c_void_p] * 4,
         ctypes.c_int,
         *[ctypes.c_double] * 2,
         *[ctypes.c_void_p] * 4,
     ]
-    return found if interface == INTERFACE else None
+    return function

@@ -2,16 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import atan, cos, sin, tan
 
 import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.behaviour import Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
 from rotctl.mechanics.model import Model, is_character
-from rotctl.rotations import Array, advance, cross
+from rotctl.rotations import Array, cross
 from rotctl.settings import STRICT, Finite, NonNegative, Range
+
+
+SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
 
 @validated(frozen=True, config=STRICT)
@@ -117,28 +122,29 @@ def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     return pose
 
 
-def place(model: Model, data: mujoco.MjData, start: Start, orientation: Array, pose: Array) -> None:
-    """Put the character on the ground, moving. On a slope, pitch and velocity are relative to it.
+def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axes: Array) -> None:
+    """Put the character on the ground, moving. On a slope, its velocity is along the slope.
 
     Args:
-        orientation: (4,) of the pelvis before it is pitched, unit quaternion.
-        pose: (nu,) [rad], unless the start has one.
+        usual: the behaviour's own, where the start does not say otherwise.
+        axes: (3, 3) rows are the behaviour's forward, left and up; the start's velocities are
+            along them.
     """
     mj = model.mj
     mujoco.mj_resetData(mj, data)
-    data.qpos[model.angles] = pose if start.pose is None else start.pose
-    slope = model.ground.slope
-    pitch = np.array([0.0, start.pitch - slope, 0.0])
-    data.qpos[3:7] = advance(orientation, pitch)
+    data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
+    data.qpos[3:7] = usual.orientation
     mujoco.mj_kinematics(mj, data)
-    data.qpos[2] -= _clearance(model, data)
+    data.qpos[2] -= _clearance(model, data) + SINK
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[1] - data.subtree_com[1]
     x, y, z = start.velocity
-    velocity = np.array([x * np.cos(slope), y, z + x * np.sin(slope)])
-    data.qvel[:3] = velocity + cross(start.angular_velocity, offset)
-    data.qvel[3:6] = product(start.angular_velocity, data.xmat[1].reshape(3, 3))
+    slope = atan(tan(model.ground.slope) * axes[0, 0])  # along the way
+    velocity = product(np.array([x * cos(slope), y, z + x * sin(slope)]), axes)
+    spin = product(start.angular_velocity, axes)
+    data.qvel[:3] = velocity + cross(spin, offset)
+    data.qvel[3:6] = product(spin, data.xmat[1].reshape(3, 3))
 
 
 def _clearance(model: Model, data: mujoco.MjData) -> float:

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 from math import acos, degrees, pi
 
 from rotctl.config import Config
-from rotctl.mechanics.excursion import Excursion
-from rotctl.mechanics.state import State
 from rotctl.metrics.rolling import measure
-from rotctl.rotations import Array
+from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.simulation.episode import Moment
 from rotctl.tune.objective import Rolled
 from rotctl.tune.space import Stopping
 
-Stop = Callable[[State, Excursion], bool]
+Stop = Callable[[Moment], bool]
 
 
 @dataclass(frozen=True)
@@ -34,8 +33,7 @@ def attempt(item: Attempt) -> Rolled:
     config = item.config
     scenario = build(config)
     commanded, period = config.behaviour.angular_velocity, 1.0 / config.controller.rate
-    axis = scenario.behaviour.trunk_axis
-    buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded, axis))
+    buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
     metrics = measure(buffer.arrays(), config.criteria, commanded, period)
     return Rolled(
         survived=metrics.duration,
@@ -46,23 +44,24 @@ def attempt(item: Attempt) -> Rolled:
     )
 
 
-def hopeless(stopping: Stopping, commanded: float, axis: Callable[[State], Array]) -> Stop:
+def hopeless(stopping: Stopping, commanded: float) -> Stop:
     """A test for one run: has it stalled, or left its axis?
 
     Args:
         stopping: the limits.
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
-        axis: the trunk's axis (3,) that should stay on the rolling axis.
     """
     direction = -1.0 if commanded < 0 else 1.0
     mark: tuple[float, float] | None = None  # progress [rev] and time [s] when it last grew
 
-    def stop(state: State, now: Excursion) -> bool:
+    def stop(moment: Moment) -> bool:
         nonlocal mark
-        progress = direction * float(now.angle[1]) / (2.0 * pi)
+        signals, time = moment.signals, moment.state.time
+        left = signals.axes[1]
+        progress = direction * dot(left, signals.angle) / (2.0 * pi)
         if mark is None or progress >= mark[0] + stopping.stall_progress:
-            mark = progress, state.time
-        off_axis = degrees(acos(min(max(float(axis(state)[1]), -1.0), 1.0)))
-        return state.time - mark[1] >= stopping.stall_time or off_axis >= stopping.off_axis
+            mark = progress, time
+        off_axis = degrees(acos(min(max(dot(left, signals.axis), -1.0), 1.0)))
+        return time - mark[1] >= stopping.stall_time or off_axis >= stopping.off_axis
 
     return stop

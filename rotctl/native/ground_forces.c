@@ -1,9 +1,6 @@
-// Adds up what the ground does to the character; `Reference` in ground_forces.py says what and why.
-
-#include <math.h>
-#include <string.h>
-
-#include <mujoco/mujoco.h>
+// simulation/ground_forces.py: adds up what the ground does to the character.
+#include "layout.h"
+#include "small.h"
 
 enum { SLOTS = 1024 };
 
@@ -16,10 +13,7 @@ typedef struct {
   int count;
 } Sums;
 
-int rotctl_ground_mujoco_version(void) { return mjVERSION_HEADER; }
-
-// A size that the Python side must share, so that a library built from other source is refused.
-int rotctl_ground_layout(void) { return sizeof(Sums); }
+int rotctl_ground_size(void) { return sizeof(Sums); }
 
 static double length(const double* v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
@@ -62,10 +56,10 @@ void rotctl_ground_add(const mjModel* m, const mjData* d, Sums* s) {
   for (int i = 0; i < d->ncon; i++) {
     const mjContact* k = d->contact + i;
     int first = m->geom_bodyid[k->geom[0]], second = m->geom_bodyid[k->geom[1]];
-    int own = m->body_rootid[first] == 1;
-    if (own == (m->body_rootid[second] == 1) || k->efc_address < 0) continue;
+    int is_first = own(m, first);
+    if (is_first == own(m, second) || k->efc_address < 0) continue;
     s->penetration = fmax(s->penetration, -k->dist);
-    double local[3], force[3], sign = own ? -1 : 1;
+    double local[3], force[3], sign = is_first ? -1 : 1;
     decode(m, k, d->efc_force + k->efc_address, local);
     if (local[0] == 0 && local[1] == 0 && local[2] == 0) continue;
     for (int a = 0; a < 3; a++) {
@@ -73,7 +67,7 @@ void rotctl_ground_add(const mjModel* m, const mjData* d, Sums* s) {
       force[a] = sign * (f[0] * local[0] + f[3] * local[1] + f[6] * local[2]);
       sum[a] += force[a];
     }
-    int at = slot(s, own ? first : second, k->pos, k->frame, sign);
+    int at = slot(s, is_first ? first : second, k->pos, k->frame, sign);
     for (int a = 0; at >= 0 && a < 3; a++) s->now[at][a] += force[a];
   }
   for (int i = 0; i < s->count; i++) {

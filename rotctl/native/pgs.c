@@ -1,10 +1,6 @@
-// Projected Gauss-Seidel; `solve` in pgs.py is the reference and says what is solved.
-
+// simulation/pgs.py `solve`: projected Gauss-Seidel.
 #include <math.h>
 #include <string.h>
-
-// Changes with the arguments below, so that a library built from other source is refused.
-int rotctl_pgs_interface(void) { return 3; }
 
 // Comparisons are written so that what is not a number passes through them.
 static double projected(double x, int normal, double most) {

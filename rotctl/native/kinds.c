@@ -1,0 +1,79 @@
+// control/kinds.py: each kind of objective is one function of its name.
+#include "layout.h"
+#include "small.h"
+
+// Along the task's axes: the error, and what acceleration, stiffness and damping ask for.
+static void wish(const Task* t, const double* missing, const double* velocity, double* wanted,
+                 double* error) {
+  double slip[3], slip_along[3], along[3];
+  for (int i = 0; i < 3; i++) slip[i] = t->velocity[i] - velocity[i];
+  rotate(error, t->axes, missing);
+  rotate(slip_along, t->axes, slip);
+  rotate(along, t->axes, t->acceleration);
+  for (int i = 0; i < 3; i++)
+    wanted[i] = along[i] + t->stiffness[i] * error[i] + t->damping[i] * slip_along[i];
+}
+
+int rotctl_kind_linear(const Self* s, const mjData* d, const Reading* r, const Task* t, double* rows,
+                       double* wanted, double* weight, double* error) {
+  (void)d;
+  double missing[3];
+  for (int i = 0; i < 3; i++) missing[i] = t->target[i] - r->com[i];
+  wish(t, missing, r->com_velocity, wanted, error);
+  for (int i = 0; i < 3; i++) {
+    wanted[i] *= s->c.mass, weight[i] = t->weight[i];
+    for (int j = 0; j < 3; j++) rows[6 * i + j] = t->axes[3 * i + j], rows[6 * i + 3 + j] = 0;
+  }
+  return 3;
+}
+
+int rotctl_kind_spin(const Self* s, const mjData* d, const Reading* r, const Task* t, double* rows,
+                     double* wanted, double* weight, double* error) {
+  (void)s, (void)d;
+  double along[3], world[3], rate[3];
+  wish(t, t->target, r->angular_velocity, along, error);
+  rotate_back(world, t->axes, along);
+  rotate(rate, r->inertia, world);
+  rotate(wanted, t->axes, rate);
+  for (int i = 0; i < 3; i++) {
+    weight[i] = t->weight[i];
+    for (int j = 0; j < 3; j++) rows[6 * i + j] = 0, rows[6 * i + 3 + j] = t->axes[3 * i + j];
+  }
+  return 3;
+}
+
+// Rows of a Jacobian J (3, nv) along the axes, and what they should give, less dJ/dt qdot.
+static int motion(const Self* s, const mjData* d, const Task* t, const double* J,
+                  const double* J_dot, const double* missing, double* rows, double* wanted,
+                  double* weight, double* error) {
+  int nv = s->nv;
+  double velocity[3], rest[3], rest_along[3];
+  for (int i = 0; i < 3; i++) {
+    velocity[i] = dot(J + i * nv, d->qvel, nv);
+    rest[i] = dot(J_dot + i * nv, d->qvel, nv);
+    weight[i] = t->weight[i];
+  }
+  wish(t, missing, velocity, wanted, error);
+  rotate(rest_along, t->axes, rest);
+  for (int i = 0; i < 3; i++) {
+    wanted[i] -= rest_along[i];
+    for (int v = 0; v < nv; v++)
+      rows[i * nv + v] = t->axes[3 * i] * J[v] + t->axes[3 * i + 1] * J[nv + v] +
+                         t->axes[3 * i + 2] * J[2 * nv + v];
+  }
+  return 3;
+}
+
+int rotctl_kind_point(const Self* s, const mjData* d, const Reading* r, const Task* t, double* rows,
+                      double* wanted, double* weight, double* error) {
+  (void)r;
+  double place[3], missing[3], J[3 * DOFS], J_dot[3 * DOFS];
+  rotate(place, d->xmat + 9 * t->body, t->point);
+  for (int i = 0; i < 3; i++) {
+    place[i] += d->xpos[3 * t->body + i];
+    missing[i] = t->target[i] - place[i];
+  }
+  s->mj.jac(s->m, d, J, 0, place, t->body);
+  s->mj.jacDot(s->m, d, J_dot, 0, place, t->body);
+  return motion(s, d, t, J, J_dot, missing, rows, wanted, weight, error);
+}

@@ -1,0 +1,102 @@
+// What Python and C hand each other. Mirrored by rotctl/control/compiled.py and task.py, which
+// compare the sizes; a library that was built from other source is refused.
+#ifndef ROTCTL_LAYOUT_H
+#define ROTCTL_LAYOUT_H
+
+#include <mujoco/mujoco.h>
+
+enum { CONTACTS = 64, TASKS = 16, MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
+enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
+enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
+
+// MuJoCo's functions, found by Python in the library that it has loaded already.
+typedef struct {
+  void (*mulM)(const mjModel*, const mjData*, mjtNum*, const mjtNum*);
+  void (*solveM)(const mjModel*, mjData*, mjtNum*, const mjtNum*, int);
+  void (*factorM)(const mjModel*, mjData*);
+  int (*boxQP)(mjtNum*, mjtNum*, int*, const mjtNum*, const mjtNum*, int, const mjtNum*,
+               const mjtNum*);
+  void (*jac)(const mjModel*, const mjData*, mjtNum*, mjtNum*, const mjtNum*, int);
+  void (*jacDot)(const mjModel*, const mjData*, mjtNum*, mjtNum*, const mjtNum*, int);
+  void (*applyFT)(const mjModel*, mjData*, const mjtNum*, const mjtNum*, const mjtNum*, int,
+                  mjtNum*);
+} Functions;
+
+// One objective over the acceleration; see rotctl/control/task.py.
+typedef struct {
+  int kind, body;
+  double axes[9], point[3], target[4], velocity[3], acceleration[3];
+  double stiffness[3], damping[3], weight[3];
+} Task;
+
+// Constants of a run.
+typedef struct {
+  double period, friction, diagonal, tolerance, slack, touch, look_ahead, mass, gravity[3];
+  int sees_disturbance, trunk_count;
+  int trunk[16];
+  double trunk_weight[16];
+  const double *torque_limit, *armature;  // (nu)
+  const double* joint_range;              // (nu, 2)
+} Constants;
+
+// The state that `rotctl_read` finds. The bias is (nv).
+typedef struct {
+  double com[3], com_velocity[3], linear[3], angular[3], inertia[9], angular_velocity[3];
+  double rotation[9], offset[3], trunk_axes[9];
+  double position[CONTACTS][3], frame[CONTACTS][9], friction[CONTACTS][2];
+  double gap[CONTACTS];
+  int body[CONTACTS];
+  long long row[CONTACTS];
+  int count;
+  double* bias;
+} Reading;
+
+// What a behaviour wants. Poses are (nu), `held_out` is (nbody).
+typedef struct {
+  double forward[3], blend;
+  double pose_stiffness, pose_damping, pose_horizon, pose_weight, blend_weight;
+  double contact_damping, contact_weight, contact_force;
+  double threshold_force, threshold_torque, threshold_separation;
+  int supervisor, tasks;
+  const Task* task;
+  const double *pose_a, *pose_b;
+  const unsigned char* held_out;
+} Command;
+
+// What `rotctl_decide` decides. Torque is (nu).
+typedef struct {
+  double force[CONTACTS][3];
+  double rates_wanted[6], rates_predicted[6], blend, residual;
+  double error[TASKS][3], wanted[TASKS][3], predicted[TASKS][3];
+  double* torque;
+  unsigned char used[CONTACTS];
+} Answer;
+
+struct Self;
+// A kind of objective: fills rows (k, nv) or, of momentum, (k, 6); returns k.
+typedef int (*Kind)(const struct Self*, const mjData*, const Reading*, const Task*, double* rows,
+                    double* wanted, double* weight, double* error);
+
+typedef struct Self {
+  const mjModel* m;
+  mjData* scratch;
+  Functions mj;
+  Constants c;
+  const Kind* kind;             // by their numbers; 0 where there is none
+  const unsigned char* motion;  // whether a kind's rows are over qddot, or over [Ldot, Hdot]
+  int nv, nu;
+  double *bias, *diagonal;                         // (nv)
+  double *jacobian, *solved;                       // (ROWS + 1, nv)
+  double *tau_a, *tau_b, *difference, *torque;     // (nu)
+  double *A, *BB, *GG;                             // (ROWS, FORCES), (ROWS, ROWS), (FORCES, FORCES)
+  double frame[CONTACTS][9];                       // of the candidates, tangents along `forward`
+  double maps[6][FORCES], pull[FORCES];            // of the candidates
+  double drift[ROWS], wanted[ROWS], weight[ROWS];  // of the candidates' rows, then the tasks'
+  double rate_rows[MOMENTA][6], rate_wanted[MOMENTA], rate_weight[MOMENTA];
+  int momenta, motion_rows, first_row[TASKS], row_count[TASKS];
+  double *reach, *Q;                                   // (ROWS, FORCES + 2 + nu), (ROWS, ROWS)
+  double *H, *f, *Hs, *fs, *x, *lower, *upper, *work;  // one quadratic program
+  double *t1, *t2;
+} Self;
+
+#endif

@@ -1,0 +1,62 @@
+// Arithmetic on small arrays. Every sum has one order, whatever compiler and processor.
+#ifndef ROTCTL_SMALL_H
+#define ROTCTL_SMALL_H
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Four running sums: an order that a compiler may carry out four at a time.
+static inline double dot(const double* a, const double* b, int n) {
+  double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    s0 += a[i] * b[i], s1 += a[i + 1] * b[i + 1];
+    s2 += a[i + 2] * b[i + 2], s3 += a[i + 3] * b[i + 3];
+  }
+  for (; i < n; i++) s0 += a[i] * b[i];
+  return (s0 + s1) + (s2 + s3);
+}
+
+static inline void cross(double* out, const double* a, const double* b) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// out = R v
+static inline void rotate(double* out, const double* R, const double* v) {
+  for (int i = 0; i < 3; i++) out[i] = R[3 * i] * v[0] + R[3 * i + 1] * v[1] + R[3 * i + 2] * v[2];
+}
+
+// out = R' v
+static inline void rotate_back(double* out, const double* R, const double* v) {
+  for (int i = 0; i < 3; i++) out[i] = R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2];
+}
+
+// out (n, n), zero so far, becomes rows' W rows; rows (k, n) with leading dimension ld; no
+// weights are ones.
+static inline void square(double* out, int ld_out, const double* rows, int k, int n, int ld,
+                          const double* weight) {
+  for (int r = 0; r < k; r++)
+    for (int i = 0; i < n; i++) {
+      double a = (weight ? weight[r] : 1) * rows[r * ld + i];
+      for (int j = i; j < n; j++) out[i * ld_out + j] += a * rows[r * ld + j];
+    }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < i; j++) out[i * ld_out + j] = out[j * ld_out + i];
+}
+
+// Cholesky factor of a (n, n) in place, lower triangle; 0 if not positive definite.
+static inline int cholesky(double* a, int n) {
+  for (int j = 0; j < n; j++) {
+    double d = a[j * n + j] - dot(a + j * n, a + j * n, j);
+    if (!(d > 0)) return 0;
+    d = sqrt(d);
+    a[j * n + j] = d;
+    for (int i = j + 1; i < n; i++) a[i * n + j] = (a[i * n + j] - dot(a + i * n, a + j * n, j)) / d;
+  }
+  return 1;
+}
+
+#endif

@@ -1,0 +1,136 @@
+"""One simulated episode, control step by control step: the loop that everybody reads.
+
+Read the state, ask the behaviour, decide, disturb, step the physics. Runs record the moments; the
+bench, the search and the tests look at them.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import mujoco
+
+from rotctl.behaviours.behaviour import Behaviour, Signals
+from rotctl.control import Command, Controller, Decision
+from rotctl.mechanics.disturbance import Disturbance
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.rotations import Array
+from rotctl.simulation.ground_forces import GroundForces
+from rotctl.simulation.start import Start, place
+from rotctl.simulation.stepping import Stepper
+
+INITIAL_BLEND = 0.5  # gamma before the first decision: no preference
+STAGES = ("physics", "state", "command", "decision")
+Mark = Callable[[str], object]
+
+
+class Parts(Protocol):
+    """What an episode is made of."""
+
+    @property
+    def model(self) -> Model:
+        """The character in its world."""
+        ...
+
+    @property
+    def behaviour(self) -> Behaviour[Any]:
+        """What it does."""
+        ...
+
+    @property
+    def controller(self) -> Controller:
+        """What moves it."""
+        ...
+
+    @property
+    def stepper(self) -> Stepper:
+        """The physics."""
+        ...
+
+    @property
+    def disturbance(self) -> Disturbance:
+        """What disturbs it."""
+        ...
+
+    @property
+    def start(self) -> Start:
+        """How it starts."""
+        ...
+
+
+@dataclass(frozen=True)
+class Moment:
+    """One control step.
+
+    Attributes:
+        state: that the controller saw.
+        command, signals: of the behaviour.
+        blend: gamma of the step before.
+        decision: of the controller.
+        wrench: (6,) from outside, about the centre of mass [N, N m].
+        forces: what the ground did.
+        ground_height: below the centre of mass [m].
+        remark: of the physics; mostly empty.
+    """
+
+    state: State
+    command: Command
+    signals: Signals
+    blend: float
+    decision: Decision
+    wrench: Array
+    forces: GroundForces
+    ground_height: float
+    remark: str
+
+
+class Episode:
+    """An iterator over moments that ends where the physics breaks down.
+
+    Attributes:
+        data: MuJoCo's, which a reader must leave alone.
+        breakdown: why it ended; empty before.
+    """
+
+    def __init__(self, parts: Parts, mark: Mark = lambda stage: None) -> None:
+        """Place the character.
+
+        Args:
+            mark: called at the end of each of `STAGES`, for a clock.
+        """
+        self.breakdown = ""
+        self._parts, self._mark = parts, mark
+        self.data = mujoco.MjData(parts.model.mj)
+        usual = parts.behaviour.start(parts.start.pitch)
+        place(parts.model, self.data, parts.start, usual, parts.behaviour.axes)
+
+    def __iter__(self) -> Iterator[Moment]:
+        """The moments, one a control period."""
+        parts, data, mark = self._parts, self.data, self._mark
+        model, behaviour, controller = parts.model, parts.behaviour, parts.controller
+        period = 1.0 / controller.settings.rate
+        memory, blend = None, INITIAL_BLEND  # each is what the step before left
+        while True:
+            parts.stepper.evaluate(data)
+            self.breakdown = parts.stepper.complaint(data)
+            if self.breakdown:
+                return
+            outside = parts.disturbance.apply(data, period)
+            mark("physics")
+            state = controller.read(data)
+            mark("state")
+            if memory is None:
+                memory = behaviour.begin(parts.start.pitch, state)
+            memory = behaviour.advance(memory, state)
+            command = behaviour.command(memory, state)
+            signals = behaviour.signals(memory, state)
+            mark("command")
+            decision = controller.decide(state, command, blend)
+            mark("decision")
+            forces = parts.stepper.advance(data, decision.torque, state.contacts)
+            x, y, _ = state.momentum.com.tolist()
+            height, remark = model.ground.height(x, y), parts.stepper.remark()
+            mark("physics")
+            yield Moment(state, command, signals, blend, decision, outside, forces, height, remark)
+            blend = decision.blend

@@ -1,0 +1,56 @@
+"""One control step as a row of the log."""
+
+from rotctl.log import TrajectoryBuffer
+from rotctl.simulation.episode import Moment
+
+
+def record(buffer: TrajectoryBuffer, i: int, moment: Moment) -> None:
+    """Write row `i` of the log."""
+    state, command, signals = moment.state, moment.command, moment.signals
+    decision, forces = moment.decision, moment.forces
+    trajectory, momentum = buffer.trajectory, state.momentum
+    trajectory.time[i] = state.time
+    trajectory.qpos[i] = state.position
+    trajectory.qvel[i] = state.velocity
+    trajectory.ctrl[i] = decision.torque
+    trajectory.com[i] = momentum.com
+    trajectory.ground_height[i] = moment.ground_height
+    trajectory.com_velocity[i] = momentum.com_velocity
+    trajectory.linear_momentum[i] = momentum.linear
+    trajectory.angular_momentum[i] = momentum.angular
+    trajectory.angular_velocity[i] = momentum.angular_velocity
+    trajectory.angular_excursion[i] = signals.angle
+    trajectory.linear_momentum_rate_desired[i] = decision.rates_wanted[:3]
+    trajectory.angular_momentum_rate_desired[i] = decision.rates_wanted[3:]
+    trajectory.linear_momentum_rate_predicted[i] = decision.rates_predicted[:3]
+    trajectory.angular_momentum_rate_predicted[i] = decision.rates_predicted[3:]
+    trajectory.blend[i] = decision.blend
+    trajectory.phase[i] = signals.phase
+    trajectory.trunk_axis[i] = signals.axis
+    commanded = buffer.command
+    commanded.axes[i] = signals.axes
+    commanded.stage[i] = signals.stage
+    commanded.target[i] = command.tasks["target"]
+    commanded.velocity[i] = command.tasks["velocity"]
+    commanded.error[i] = decision.error
+    commanded.wanted[i] = decision.wanted
+    commanded.predicted[i] = decision.predicted
+    contacts, capacity = buffer.contacts, buffer.contacts.body.shape[1]
+    m, k = min(state.contacts.count, capacity), min(len(forces.body), capacity)
+    contacts.count[i] = state.contacts.count
+    contacts.body[i, :k] = forces.body[:k]
+    contacts.position[i, :k] = forces.position[:k]
+    contacts.normal[i, :k] = forces.normal[:k]
+    contacts.force_predicted[i, :m] = decision.force[:m]
+    contacts.force_realised[i, :k] = forces.mean[:k]
+    contacts.force_peak[i, :k] = forces.peak[:k]
+    contacts.used[i, :m] = decision.used[:m]
+    contacts.ground_force[i] = forces.total
+    contacts.ground_force_peak[i] = forces.total_peak
+    contacts.penetration[i] = forces.penetration
+    buffer.disturbance.wrench[i] = moment.wrench
+    solver = buffer.solver
+    solver.status[i] = decision.status
+    solver.iterations[i] = decision.iterations
+    solver.residual[i] = decision.residual
+    solver.fallback[i] = decision.fallback
