@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
+
 
 def quaternion_from_rotation_vector(vector: Array) -> Array:
     """Unit quaternion (4,) of a rotation vector (3,) [rad]."""
@@ -60,6 +62,17 @@ def advance(quaternion: Array, rotation_vector: Array) -> Array:
     """Turn a unit quaternion (4,) by a world-frame rotation vector (3,) [rad]."""
     turned = multiply(quaternion_from_rotation_vector(rotation_vector), quaternion)
     return np.asarray(turned / sqrt(dot(turned, turned)))
+
+
+def rotation_to(start: Array, end: Array) -> Array:
+    """Shortest rotation vector (3,) [rad], world, that turns one unit quaternion into another."""
+    w, x, y, z = multiply(end, start * _CONJUGATE).tolist()
+    sine = sqrt(x * x + y * y + z * z)
+    if sine < 1e-12:
+        return np.zeros(3)
+    angle = 2.0 * atan2(sine, abs(w))  # a quaternion and its negative are one orientation
+    scale = angle / sine if w >= 0.0 else -angle / sine
+    return np.array([scale * x, scale * y, scale * z])
 
 
 def rotation_between(start: Array, end: Array) -> Array:

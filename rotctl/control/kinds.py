@@ -19,7 +19,7 @@ from rotctl.errors import InputError
 from rotctl.linear import product
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
+from rotctl.rotations import Array, rotation_to
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,17 @@ def point(task: Tasks, model: Model, state: State) -> Rows:
     mujoco.mj_jac(model.mj, state.data, J, None, place, body)
     mujoco.mj_jacDot(model.mj, state.data, J_dot, None, place, body)
     return _motion(task, state, J, J_dot, task["target"][:3] - place)
+
+
+@_kind(momentum=False)
+def attitude(task: Tasks, model: Model, state: State) -> Rows:
+    """A body's attitude. Target its orientation, a unit quaternion; weight 1/(rad/s2)2."""
+    body = int(task["body"])
+    J, J_dot = np.zeros((2, 3, model.mj.nv))
+    mujoco.mj_jac(model.mj, state.data, None, J, state.data.xpos[body], body)
+    mujoco.mj_jacDot(model.mj, state.data, None, J_dot, state.data.xpos[body], body)
+    missing = rotation_to(state.data.xquat[body], task["target"])
+    return _motion(task, state, J, J_dot, missing)
 
 
 def _motion(task: Tasks, state: State, J: Array, J_dot: Array, missing: Array) -> Rows:

@@ -77,3 +77,13 @@ int rotctl_kind_point(const Self* s, const mjData* d, const Reading* r, const Ta
   s->mj.jacDot(s->m, d, J_dot, 0, place, t->body);
   return motion(s, d, t, J, J_dot, missing, rows, wanted, weight, error);
 }
+
+int rotctl_kind_attitude(const Self* s, const mjData* d, const Reading* r, const Task* t,
+                         double* rows, double* wanted, double* weight, double* error) {
+  (void)r;
+  double missing[3], J[3 * DOFS], J_dot[3 * DOFS];
+  rotation_to(missing, d->xquat + 4 * t->body, t->target);
+  s->mj.jac(s->m, d, 0, J, d->xpos + 3 * t->body, t->body);
+  s->mj.jacDot(s->m, d, 0, J_dot, d->xpos + 3 * t->body, t->body);
+  return motion(s, d, t, J, J_dot, missing, rows, wanted, weight, error);
+}

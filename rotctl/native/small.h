@@ -34,6 +34,19 @@ static inline void rotate_back(double* out, const double* R, const double* v) {
   for (int i = 0; i < 3; i++) out[i] = R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2];
 }
 
+// The shortest rotation vector that turns one unit quaternion into another, world axes.
+static inline void rotation_to(double* out, const double* start, const double* end) {
+  double w = start[0], x = -start[1], y = -start[2], z = -start[3];
+  double turn[4] = {end[0] * w - end[1] * x - end[2] * y - end[3] * z,
+                    end[0] * x + end[1] * w + end[2] * z - end[3] * y,
+                    end[0] * y - end[1] * z + end[2] * w + end[3] * x,
+                    end[0] * z + end[1] * y - end[2] * x + end[3] * w};
+  double sine = sqrt(turn[1] * turn[1] + turn[2] * turn[2] + turn[3] * turn[3]);
+  double angle = 2 * atan2(sine, fabs(turn[0])), scale = 0;
+  if (sine >= 1e-12) scale = turn[0] >= 0 ? angle / sine : -angle / sine;
+  for (int i = 0; i < 3; i++) out[i] = scale * turn[1 + i];
+}
+
 // out (n, n), zero so far, becomes rows' W rows; rows (k, n) with leading dimension ld; no
 // weights are ones.
 static inline void square(double* out, int ld_out, const double* rows, int k, int n, int ld,
