@@ -118,6 +118,27 @@ def attitude(task: Tasks, model: Model, state: State) -> Rows:
     return _motion(task, state, J, J_dot, missing)
 
 
+@_kind(momentum=False)
+def limits(task: Tasks, model: Model, state: State) -> Rows:
+    """Joints near their stops, which the optimisation cannot see otherwise.
+
+    Within `point[0]` [rad] of a stop a joint is wanted back at that distance; the weight
+    [1/(rad/s2)2] grows from 0 there to its full value at the stop. Gains are the first of each.
+    The error is the number of such joints and the largest distance they are to go [rad].
+    """
+    margin = task["point"][0]
+    low, high = model.joint_range.T
+    angle, velocity = state.position[model.angles], state.velocity[model.joints]
+    back = np.maximum(low + margin - angle, 0.0) - np.maximum(angle - high + margin, 0.0)
+    near = np.flatnonzero(back)
+    rows = np.zeros((len(near), model.mj.nv))
+    rows[np.arange(len(near)), near + model.joints.start] = 1.0
+    wanted = task["stiffness"][0] * back[near] - task["damping"][0] * velocity[near]
+    weight = task["weight"][0] * np.minimum(np.abs(back[near]) / margin, 1.0)
+    error = np.array([len(near), np.abs(back).max(initial=0.0), 0.0])
+    return Rows(rows, wanted, weight, error)
+
+
 def _motion(task: Tasks, state: State, J: Array, J_dot: Array, missing: Array) -> Rows:
     """Rows of a Jacobian (3, nv) along the axes; `missing` (3,) to the target, world."""
     wanted, error = _wish(task, missing, product(J, state.velocity))

@@ -87,3 +87,24 @@ int rotctl_kind_attitude(const Self* s, const mjData* d, const Reading* r, const
   s->mj.jacDot(s->m, d, 0, J_dot, d->xpos + 3 * t->body, t->body);
   return motion(s, d, t, J, J_dot, missing, rows, wanted, weight, error);
 }
+
+int rotctl_kind_limits(const Self* s, const mjData* d, const Reading* r, const Task* t, double* rows,
+                       double* wanted, double* weight, double* error) {
+  (void)r;
+  int k = 0;
+  double margin = t->point[0];
+  error[1] = 0;
+  for (int i = 0; i < s->nu; i++) {
+    double q = d->qpos[i + ROOT + 1], low = s->c.joint_range[2 * i], high = s->c.joint_range[2 * i + 1];
+    double back = fmax(low + margin - q, 0) - fmax(q - high + margin, 0);
+    if (back == 0) continue;
+    memset(rows + k * s->nv, 0, sizeof(double) * s->nv);
+    rows[k * s->nv + i + ROOT] = 1;
+    wanted[k] = t->stiffness[0] * back - t->damping[0] * d->qvel[i + ROOT];
+    weight[k] = t->weight[0] * fmin(fabs(back) / margin, 1);
+    error[1] = fmax(error[1], fabs(back));
+    k++;
+  }
+  error[0] = k, error[2] = 0;
+  return k;
+}
