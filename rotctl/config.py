@@ -20,7 +20,7 @@ from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours import BehaviourSettings
 from rotctl.checked import adapter, brief, checked, clip, unknown_key
 from rotctl.control import ControllerSettings
 from rotctl.errors import InputError, LogError
@@ -31,7 +31,7 @@ from rotctl.mechanics.disturbance import DisturbanceSettings
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Terrain
-from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
 from rotctl.plain import NOTHING, dotted, member, put, way
 from rotctl.settings import STRICT, Positive
@@ -47,10 +47,10 @@ class Config:
         duration: simulated time [s].
     """
 
-    behaviour: RollingSettings
+    behaviour: BehaviourSettings
     character: Character
     controller: ControllerSettings
-    criteria: RollingCriteria
+    criteria: Criteria
     disturbance: DisturbanceSettings
     excursion: ExcursionSettings
     physics: Physics

@@ -17,7 +17,7 @@ from rotctl import files
 from rotctl.config import Config, to_yaml
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
-from rotctl.metrics.rolling import RollingMetrics, failure_reason, measure
+from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario, build
 from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
@@ -189,51 +189,22 @@ def in_memory(
 def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall: float) -> Summary:
     """The summary row of a simulated run; `wall` is the time the loop took [s]."""
     config = scenario.config
-    metrics = measure(
-        buffer.arrays(),
-        config.criteria,
-        config.behaviour.angular_velocity,
-        1.0 / config.controller.rate,
+    period = 1.0 / config.controller.rate
+    judgement = judge(
+        buffer.arrays(), config.criteria, config.behaviour.commanded, period, config.duration
     )
-    reason = f"physics broke down at t = {metrics.duration:.2f} s: {breakdown}"
-    if not breakdown:
-        reason = failure_reason(metrics, config.criteria, config.duration)
-    return _row(scenario, metrics, reason, wall)
-
-
-def _row(scenario: Scenario, metrics: RollingMetrics, reason: str, wall: float) -> Summary:
-    config = scenario.config
+    columns, reason = judgement.columns, judgement.reason
+    if breakdown:
+        reason = f"physics broke down at t = {columns['duration']:.2f} s: {breakdown}"
     row = {
         "run_id": scenario.run_id,
         "behaviour": config.behaviour.name,
+        "criteria": config.criteria.kind,
         "seed": config.seed,
         "success": not reason,
         "failure_reason": reason,
-        "duration": metrics.duration,
-        "revolutions": metrics.revolutions,
-        "angular_velocity_mean": metrics.angular_velocity_mean,
-        "angular_velocity_commanded": config.behaviour.angular_velocity,
-        "speed_mean": metrics.speed_mean,
-        "speed_commanded": config.behaviour.speed,
-        "heading_error_end": metrics.heading_error_end,
-        "lateral_drift": metrics.lateral_drift,
-        "longest_stall": metrics.longest_stall,
-        "slowest_revolution": metrics.slowest_revolution,
-        "setback": metrics.setback,
-        "height_least": metrics.height_least,
-        "height_most": metrics.height_most,
-        "penetration": metrics.penetration,
-        "flight_turn": metrics.flight_turn,
-        "trunk_turn": metrics.trunk_turn,
-        "axis_error": metrics.axis_error,
-        "travel_least": metrics.travel_least,
-        "travel_most": metrics.travel_most,
-        "ground_force_p99": metrics.ground_force_p99,
-        "ground_force_peak": metrics.ground_force_peak,
-        "airborne": metrics.airborne,
-        "torque_p99_fraction": metrics.torque_p99_fraction,
-        "solver_failures": metrics.solver_failures,
-        "real_time_factor": metrics.duration / wall,
+        **columns,
+        "real_time_factor": columns["duration"] / wall,
     }
     # JSON has no NaN: a number that a broken-down run does not have is null.
     return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}

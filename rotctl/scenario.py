@@ -4,12 +4,15 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from rotctl.behaviours.rolling import Rolling
+from rotctl.behaviours.behaviour import Behaviour
+from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config, to_dict
 from rotctl.control import Controller
+from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
@@ -32,7 +35,7 @@ class Scenario:
 
     config: Config
     model: Model
-    behaviour: Rolling
+    behaviour: Behaviour[Any]
     controller: Controller
     stepper: Stepper
     disturbance: Disturbance
@@ -48,7 +51,8 @@ def build(config: Config) -> Scenario:
     """
     control = config.controller
     model = model_of(config)
-    behaviour = Rolling(config.behaviour, model, control, config.excursion)
+    _check(config)
+    behaviour = config.behaviour.make(model, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
     return Scenario(
         config=config,
@@ -65,6 +69,17 @@ def build(config: Config) -> Scenario:
         ),
         run_id=run_id(config, model),
     )
+
+
+def _check(config: Config) -> None:
+    """Raises InputError where the criteria judge another class of motion."""
+    rolls = isinstance(config.behaviour, RollingSettings)
+    if rolls != (config.criteria.kind == "rolling"):
+        wanted = "criteria=rolling" if rolls else "criteria=standing or criteria=orientation"
+        raise InputError(
+            f"criteria={config.criteria.name} does not judge behaviour={config.behaviour.name}, "
+            f"a behaviour of kind {config.behaviour.kind}; choose {wanted}"
+        )
 
 
 def _stepper(physics: Physics, model: Model) -> Stepper:
@@ -95,7 +110,7 @@ def run_id(config: Config, model: Model) -> str:
         InputError: there is no such clip.
     """
     parts = {"config": to_dict(config), "schema": SCHEMA_VERSION, "model": model.mjcf}
-    reference = config.behaviour.reference
+    reference = getattr(config.behaviour, "reference", None)
     if reference:
         parts["clip"] = asdict(load_clip(reference.clip))  # a name or path says not what is in it
     canonical = json.dumps(parts, sort_keys=True)

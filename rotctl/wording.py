@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+from rotctl.metrics.judge import COLUMNS
+
 if TYPE_CHECKING:
     from rotctl.log import RunLog
     from rotctl.motion.flight import Flight
@@ -27,9 +29,8 @@ def readable(summary: dict[str, Any]) -> str:
         return "-" if value is None else format(value, form)
 
     verdict = "success" if summary["success"] else f"FAILED: {summary['failure_reason']}"
-    return "\n".join(
-        [
-            f"{summary['behaviour']}  seed {summary['seed']}  run {summary['run_id']}  {verdict}",
+    if summary.get("criteria", "rolling") == "rolling":
+        measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
             f"{number('angular_velocity_mean')} rev/s "
             f"(commanded {number('angular_velocity_commanded')})",
@@ -37,6 +38,17 @@ def readable(summary: dict[str, Any]) -> str:
             f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
             f"drift {number('lateral_drift')} m",
             f"  stall        {number('longest_stall')} s at most",
+        ]
+    else:
+        known = [column for name, column in COLUMNS.items() if name in summary]
+        wide = max(len(column.title) for column in known)
+        measured = [
+            f"  {c.title:{wide}}  {number(c.name, '.3g')} {c.unit}".rstrip() for c in known
+        ]
+    return "\n".join(
+        [
+            f"{summary['behaviour']}  seed {summary['seed']}  run {summary['run_id']}  {verdict}",
+            *measured,
             f"  torque       {number('torque_p99_fraction')} of the limit (99th percentile), "
             f"{summary['solver_failures']} solver failures",
             f"  real time    x {number('real_time_factor', '.1f')}",

@@ -1,1 +1,12 @@
-"""Classes of motion: what each wants of the character at every instant."""
+"""Classes of motion: each a kind of settings that makes the behaviour of one run."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours.staged import StagedSettings
+
+BehaviourSettings = Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]
+
+__all__ = ["BehaviourSettings"]

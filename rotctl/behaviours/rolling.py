@@ -15,13 +15,14 @@ orientation and angular velocity with what is wanted of the whole body's.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.behaviours.facing import UP, frame_of
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
@@ -32,8 +33,8 @@ from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import (
-    Angle,
     PosePair,
+    Poses,
     ReferencePair,
     ReferenceSettings,
     RollAbout,
@@ -41,38 +42,8 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array, about_up, advance, cross, dot, multiply, rotate
+from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite
-
-UP = np.array([0.0, 0.0, 1.0])
-
-
-@dataclass(frozen=True)
-class Facing:
-    """How a trunk lies on the rolling axis.
-
-    Attributes:
-        trunk_axis: (3,) what it rolls about, unit, in the trunk's frame of front, left, up.
-        orientation: (4,) of the trunk at phase 0, heading along +x: takes that axis to +y.
-    """
-
-    trunk_axis: Array
-    orientation: Array
-
-
-FACING: dict[RollAbout, Facing] = {
-    "left": Facing(np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0])),
-    "right": Facing(np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 0.0, 1.0])),
-    "head": Facing(np.array([0.0, 0.0, 1.0]), np.array([0.5, -0.5, -0.5, -0.5])),
-}
-
-
-@validated(frozen=True, config=STRICT)
-class Poses:
-    """Key poses r_a and r_b by joint name, see `rotctl.motion.pose_pair`."""
-
-    a: dict[str, Angle]
-    b: dict[str, Angle]
 
 
 @validated(frozen=True, config=STRICT)
@@ -103,6 +74,20 @@ class RollingSettings:
         if (self.poses is None) == (self.reference is None):
             raise ValueError("give either poses or a reference, not both and not neither")
 
+    @property
+    def commanded(self) -> dict[str, float]:
+        """What is asked for, as columns of the summary [rev/s, m/s]."""
+        return {
+            "angular_velocity_commanded": self.angular_velocity,
+            "speed_commanded": self.speed,
+        }
+
+    def make(
+        self, model: Model, control: ControllerSettings, measured: ExcursionSettings
+    ) -> "Rolling":
+        """The behaviour of one run."""
+        return Rolling(self, model, control, measured)
+
 
 @dataclass(frozen=True)
 class RollingMemory:
@@ -122,8 +107,6 @@ class RollingMemory:
 class Rolling:
     """The rolling behaviour of one run."""
 
-    tasks: ClassVar[tuple[str, ...]] = ("linear", "spin")
-
     def __init__(
         self,
         settings: RollingSettings,
@@ -140,13 +123,10 @@ class Rolling:
         Raises:
             InputError: parts that do not fit together.
         """
-        facing = FACING[settings.roll_about]
-        heading = about_up(math.radians(settings.heading))
-        axes = np.array([rotate(heading, axis) for axis in np.eye(3)])  # forward, left, up
-        self.axes, self._left = axes, axes[1]
-        self._orientation = multiply(heading, facing.orientation)
-        self._front = rotate(self._orientation, np.array([1.0, 0.0, 0.0]))
-        self._trunk_axis = facing.trunk_axis
+        self.tasks = ("linear", "spin")
+        self._frame = frame = frame_of(settings.roll_about, settings.heading)
+        self.axes = axes = frame.axes
+        self._left = axes[1]
         self._measured = measured
         self._period = 1.0 / control.rate
         self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * self._left
@@ -162,7 +142,7 @@ class Rolling:
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] of the pelvis against the slope."""
         tilt = (pitch - self._slope) * self._left
-        return Placement(advance(self._orientation, tilt), self._poses.start(pitch))
+        return Placement(advance(self._frame.orientation, tilt), self._poses.start(pitch))
 
     def begin(self, pitch: float, state: State) -> RollingMemory:
         """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
@@ -183,7 +163,7 @@ class Rolling:
         turned = self._turned(state)
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
         if self._measured.measure == "root":
-            now = excursion.on_root(now, state.position[3:7], self._orientation)
+            now = excursion.on_root(now, state.position[3:7], self._frame.orientation)
         return replace(before, excursion=now)
 
     def command(self, memory: RollingMemory, state: State) -> Command:
@@ -219,18 +199,18 @@ class Rolling:
 
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
-        return product(state.trunk_axes, self._trunk_axis)
+        return product(state.trunk_axes, self._frame.trunk_axis)
 
     def _turned(self, state: State) -> float:
         """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
         front = state.trunk_axes[:, 0]
-        across = dot(self._left, cross(self._front, front))
-        return math.atan2(across, dot(self._front, front)) + self._slope
+        across = dot(self._left, cross(self._frame.front, front))
+        return math.atan2(across, dot(self._frame.front, front)) + self._slope
 
 
 def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:
     if settings.poses:
-        return make_pose_pair(model, settings.poses.a, settings.poses.b)
+        return make_pose_pair(model, settings.poses)
     assert settings.reference  # __post_init__
     reference = settings.reference
     clip = load_clip(reference.clip)

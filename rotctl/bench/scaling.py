@@ -4,13 +4,14 @@ import time
 from dataclasses import dataclass, replace
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from rotctl import files
+from rotctl.behaviours.behaviour import Behaviour
 from rotctl.config import Config, load
-from rotctl.behaviours.rolling import Rolling
 from rotctl.control import Controller
 from rotctl.errors import InputError
 from rotctl.mechanics import model as models
@@ -82,7 +83,7 @@ def plot(costs: list[Cost], out: Path) -> None:
 def _times(config: Config, model: Model, contacts: int) -> tuple[float, float]:
     """Microseconds of the compiled and the numpy step with that many contacts."""
     data = _lying(model, contacts)
-    behaviour = Rolling(config.behaviour, model, config.controller, config.excursion)
+    behaviour: Behaviour[Any] = config.behaviour.make(model, config.controller, config.excursion)
     state = read(model, data)
     command = behaviour.command(behaviour.begin(0.0, state), state)
     times = []

@@ -118,7 +118,7 @@ def roll(scenario: Scenario) -> Split:
     timed = replace(scenario, controller=Controller(scenario.model, settings, clock))
     steps = round(SECONDS * settings.rate)
     mj, tasks = scenario.model.mj, scenario.behaviour.tasks
-    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, 64, len(tasks))
+    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, 64, len(tasks), mj.nbody)
     taken = Split(steps)
     seconds = taken.seconds
     since = time.perf_counter()

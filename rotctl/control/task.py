@@ -41,6 +41,7 @@ class Command:
         contact: how contacts are held.
         supervisor, thresholds: which contacts may be used.
         held_out: (nbody,) True where a body's contacts may not be used.
+        slots: places of these tasks among the behaviour's, in the log; None where they are all.
     """
 
     tasks: Tasks
@@ -52,6 +53,7 @@ class Command:
     supervisor: SupervisorName
     thresholds: Thresholds
     held_out: NDArray[np.bool_]
+    slots: list[int] | None = None
 
     def copy(self) -> "Command":
         """One that later steps of the behaviour leave alone."""

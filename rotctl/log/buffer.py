@@ -48,7 +48,7 @@ class TrajectoryBuffer:
 
     @classmethod
     def allocate(
-        cls, steps: int, nq: int, nv: int, nu: int, capacity: int, tasks: int
+        cls, steps: int, nq: int, nv: int, nu: int, capacity: int, tasks: int, bodies: int
     ) -> "TrajectoryBuffer":
         """Allocates every array whose size is known before the run.
 
@@ -59,6 +59,7 @@ class TrajectoryBuffer:
             nu: size of ``ctrl``.
             capacity: recorded contacts a step.
             tasks: of the behaviour.
+            bodies: of the model.
 
         Raises:
             InputError: a size is negative, or the log would be larger than a reader accepts.
@@ -70,6 +71,7 @@ class TrajectoryBuffer:
             "nu": nu,
             "capacity": capacity,
             "tasks": tasks,
+            "bodies": bodies,
         }
         for name, size in sizes.items():
             if size < 0:

@@ -30,7 +30,7 @@ class DatasetSpec:
     Attributes:
         dtype: NumPy type string; plain ``"S"`` stands for bytes of any one fixed length.
         shape: dimensions, each a number or one of ``steps``, ``nq``, ``nv``, ``nu``,
-            ``capacity``, ``events``, ``tasks``.
+            ``capacity``, ``events``, ``tasks``, ``bodies``.
         unit: SI unit; ``"1"`` where there is none.
         description: one line for the reader of the file.
         fill: value of the rows and slots that nobody has written.
@@ -92,6 +92,9 @@ SCHEMA: dict[str, DatasetSpec] = {
     "trajectory/blend": _per_step("1", "weight between the torques of the two pose objectives"),
     "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
     "trajectory/trunk_axis": _per_step("1", "the trunk's mean axis that it rolls about, unit", 3),
+    "trajectory/trunk_axes": _per_step(
+        "1", "the trunk's mean front, left and up as columns, each unit, world", 3, 3, since=3
+    ),
     "command/axes": _per_step(
         "1", "the behaviour's forward, left and up as rows, world", 3, 3, since=3
     ),
@@ -156,6 +159,7 @@ SCHEMA: dict[str, DatasetSpec] = {
     "events/time": DatasetSpec("<f8", ("events",), "s", "simulated time of the event"),
     "events/text": DatasetSpec(f"S{EVENT_BYTES}", ("events",), "text", "what happened, UTF-8"),
     "model/joint": DatasetSpec("S64", ("nu",), "text", "name of each actuated joint, UTF-8"),
+    "model/body": DatasetSpec("S64", ("bodies",), "text", "name of each body, UTF-8", since=3),
     "model/task": DatasetSpec("S64", ("tasks",), "text", "name of each task, UTF-8", since=3),
     "model/torque_limit": DatasetSpec("<f8", ("nu",), "N m", "largest torque of each joint"),
     MODEL_PATH: DatasetSpec("S", (), "text", "self-contained MJCF of the simulated model, UTF-8"),

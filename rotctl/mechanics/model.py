@@ -6,6 +6,7 @@ is block diagonal in the two, so that control can work on full vectors and leave
 """
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -180,6 +181,19 @@ def lowest_and_highest(
     reach = along + mj.geom_size[:, 0]
     z = data.geom_xpos[:, 2]
     return float((z - reach)[chosen].min()), float((z + reach)[chosen].max())
+
+
+def body_ids(mj: mujoco.MjModel, names: Iterable[str], key: str) -> list[int]:
+    """MuJoCo's ids of bodies; a name without a side stands for both sides.
+
+    Raises:
+        InputError: there is none of a name; `key` says where it stands.
+    """
+    found: list[int] = []
+    for name in names:
+        both = [mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name + side) for side in SIDES]
+        found += both if min(both) >= 1 else [body_id(mj, name, key)]
+    return found
 
 
 def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:

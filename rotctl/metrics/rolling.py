@@ -1,18 +1,40 @@
 """A rolling run in numbers: progress, ground, axis, line, torques, and whether it succeeded."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.metrics.columns import Arrays, Column, floats, in_frame
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
-Arrays = Mapping[str, NDArray[np.generic]]
+COLUMNS = (
+    Column("revolutions", "Revolutions", "rev"),
+    Column("angular_velocity_mean", "In-plane angular velocity", "rev/s"),
+    Column("angular_velocity_commanded", "In-plane angular velocity asked for", "rev/s"),
+    Column("speed_mean", "Speed", "m/s"),
+    Column("speed_commanded", "Speed asked for", "m/s"),
+    Column("heading_error_end", "Heading error at the end", "deg"),
+    Column("lateral_drift", "Sideways drift", "m"),
+    Column("longest_stall", "Longest stall", "s"),
+    Column("slowest_revolution", "Slowest revolution", "s"),
+    Column("setback", "Furthest back", "rev"),
+    Column("height_least", "Lowest above the ground", "m"),
+    Column("height_most", "Highest above the ground", "m"),
+    Column("penetration", "Deepest overlap with the ground", "m"),
+    Column("flight_turn", "Turned in the air, of a revolution", "rev"),
+    Column("trunk_turn", "Trunk's own turn in a revolution", "rev"),
+    Column("axis_error", "Axis off, over a revolution", "deg"),
+    Column("travel_least", "Shortest revolution", "m"),
+    Column("travel_most", "Longest revolution", "m"),
+    Column("ground_force_p99", "Ground force, 99th percentile", "N"),
+    Column("ground_force_peak", "Ground force, peak", "N"),
+    Column("airborne", "Share of the time without a contact", ""),
+)
 
 
 @validated(frozen=True, config=STRICT)
@@ -36,6 +58,7 @@ class RollingCriteria:
     """
 
     name: str
+    kind: Literal["rolling"]
     stall_time: Positive
     stall_progress: Positive
     revolution_time: Positive
@@ -62,10 +85,10 @@ class RollingMetrics:
         duration: simulated time in the log [s].
         revolutions: in-plane excursion in the direction commanded [rev].
         angular_velocity_mean: in-plane, after settling, with its sign [rev/s].
-        speed_mean: of the centre of mass along x, after settling [m/s].
+        speed_mean: of the centre of mass forward, after settling [m/s].
         heading_error_end: median heading of the trunk's axis that it rolls about, over
             the last second, against the rolling axis [deg]; positive turns left.
-        lateral_drift: largest |y| of the centre of mass from where it started [m].
+        lateral_drift: furthest of the centre of mass to either side of where it started [m].
         longest_stall: longest time without the criterion's progress [s].
         stalled_at: when that began [s].
         slowest_revolution: longest time that a revolution took [s].
@@ -77,7 +100,7 @@ class RollingMetrics:
         trunk_turn: least that the root body turned about the trunk's axis in a revolution [rev].
         axis_error: largest tilt of the trunk's axis against the rolling axis, by the mean of its
             cosine over a revolution [deg].
-        travel_least: shortest way along x, in the direction of progress, of a revolution [m].
+        travel_least: shortest way forward, in the direction of progress, of a revolution [m].
         travel_most: longest of it [m].
         ground_force_p99: 99th percentile of the ground's force, mean over a control step [N].
         ground_force_peak: its largest magnitude in a physics step [N].
@@ -134,22 +157,22 @@ def measure(
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
     """
-    com = _floats(log, "trajectory/com")
+    com = in_frame(log, "trajectory/com")
     steps = len(com)
     if steps == 0:
         return NO_ROWS
-    angle = _floats(log, "trajectory/angular_excursion")[:, 1] / (2 * math.pi)
+    angle = in_frame(log, "trajectory/angular_excursion")[:, 1] / (2 * math.pi)
     direction = -1.0 if commanded < 0 else 1.0
     progress = direction * angle
     first = min(round(criteria.settle / period), steps - 1)
     # A run that ends before it settled has no mean speeds.
     elapsed = (steps - 1 - first) * period or math.nan
-    axis = _floats(log, "trajectory/trunk_axis")
+    axis = in_frame(log, "trajectory/trunk_axis")
     last_second = axis[-round(1.0 / period) :]
     heading = np.degrees([math.atan2(-x, y) for x, y, _ in last_second.tolist()])
     stall, stalled_at = longest_stall(progress, criteria.stall_progress, period)
-    height = com[:, 2] - _floats(log, "trajectory/ground_height")
-    force = _floats(log, "contacts/ground_force")
+    height = com[:, 2] - floats(log, "trajectory/ground_height")
+    force = floats(log, "contacts/ground_force")
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
     return RollingMetrics(
         duration=steps * period,
@@ -163,18 +186,14 @@ def measure(
         setback=setback(progress),
         height_least=float(height.min()),
         height_most=float(height.max()),
-        penetration=float(_floats(log, "contacts/penetration").max()),
+        penetration=float(floats(log, "contacts/penetration").max()),
         ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
-        ground_force_peak=float(_floats(log, "contacts/ground_force_peak").max()),
+        ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=int(np.count_nonzero(np.asarray(log["solver/status"]) == 2)),
         **_worst_revolutions(log, direction, progress, axis, period),
     )
-
-
-def _floats(log: Arrays, name: str) -> NDArray[np.float64]:
-    return np.asarray(log[name], dtype=float)
 
 
 def _worst_revolutions(
@@ -188,9 +207,10 @@ def _worst_revolutions(
     first, last = revolutions(progress)
     if not len(last):
         return dict.fromkeys(OF_REVOLUTIONS, math.nan)
-    x = direction * _floats(log, "trajectory/com")[:, 0]
-    turn = direction * turned_about(axis, _floats(log, "trajectory/qpos")[:, 3:7])
-    in_air = ~_floats(log, "contacts/ground_force").any(axis=1)
+    x = direction * in_frame(log, "trajectory/com")[:, 0]
+    about = floats(log, "trajectory/trunk_axis")
+    turn = direction * turned_about(about, floats(log, "trajectory/qpos")[:, 3:7])
+    in_air = ~floats(log, "contacts/ground_force").any(axis=1)
     in_flight = np.where(in_air, np.diff(progress, append=progress[-1]), 0.0)
     along = float((within(first, last, axis[:, 1]) / (last - first)).min())
     travel = x[last] - x[first]

@@ -1,13 +1,14 @@
 """Poses to track: key poses or a reference clip over the phase of a cycle."""
 
 from rotctl.motion.clip import Clip, RollAbout, load_clip
-from rotctl.motion.pose_pair import Angle, PosePair, make_pose_pair
+from rotctl.motion.pose_pair import Angle, PosePair, Poses, make_pose_pair
 from rotctl.motion.reference import ReferencePair, ReferenceSettings, make_reference_pair
 
 __all__ = [
     "Angle",
     "Clip",
     "PosePair",
+    "Poses",
     "ReferencePair",
     "ReferenceSettings",
     "RollAbout",

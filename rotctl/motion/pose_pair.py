@@ -10,13 +10,22 @@ from dataclasses import dataclass
 from math import cos, sin
 
 import numpy as np
+from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.model import SIDES, Model
 from rotctl.rotations import Array
-from rotctl.settings import Finite
+from rotctl.settings import STRICT, Finite
 
 Angle = Finite | tuple[Finite, Finite, Finite]
+
+
+@validated(frozen=True, config=STRICT)
+class Poses:
+    """Key poses r_a and r_b by joint name."""
+
+    a: dict[str, Angle]
+    b: dict[str, Angle]
 
 
 @dataclass(frozen=True)
@@ -42,7 +51,7 @@ class PosePair:
         return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
 
 
-def make_pose_pair(model: Model, a: Mapping[str, Angle], b: Mapping[str, Angle]) -> PosePair:
+def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> PosePair:
     """Poses by joint name to arrays in motor order.
 
     Raises:
@@ -50,7 +59,10 @@ def make_pose_pair(model: Model, a: Mapping[str, Angle], b: Mapping[str, Angle])
     """
     return PosePair(
         coefficients=np.array(
-            [_coefficients(model, pose, key) for pose, key in ((a, "a"), (b, "b"))]
+            [
+                _coefficients(model, pose, f"{key}.{name}")
+                for pose, name in ((poses.a, "a"), (poses.b, "b"))
+            ]
         ),
         low=model.joint_range[:, 0],
         high=model.joint_range[:, 1],
@@ -65,7 +77,7 @@ def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
             left, right = SIDES
             bases = sorted({n.removesuffix(left).removesuffix(right) for n in model.joint_names})
             raise InputError(
-                f"behaviour.poses.{key} names the unknown joint {name!r}; "
+                f"{key} names the unknown joint {name!r}; "
                 f"valid: {', '.join(bases)}, limb joints also with _l or _r"
             )
         values = (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle

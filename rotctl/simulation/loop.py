@@ -48,7 +48,8 @@ def simulate(
             f"nearest: {max(1, steps) / rate:.10g}"
         )
     tasks = parts.behaviour.tasks
-    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity, len(tasks))
+    buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity, len(tasks), mj.nbody)
+    buffer.model.body[:] = [mj.body(i).name for i in range(mj.nbody)]
     buffer.model.task[:] = tasks
     buffer.model.joint[:] = parts.model.joint_names
     buffer.model.torque_limit[:] = parts.model.torque_limit

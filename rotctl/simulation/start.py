@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import atan, cos, sin, tan
+from math import atan, cos, sin, sqrt, tan
 
 import mujoco
 import numpy as np
@@ -12,7 +12,7 @@ from rotctl.behaviours.behaviour import Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
 from rotctl.mechanics.model import Model, is_character
-from rotctl.rotations import Array, cross
+from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
 
 
@@ -43,6 +43,7 @@ class StartSettings:
         postures: to start in, by the axis that is rolled about; `pitch` is then added to
             theirs. Without any a run starts in its behaviour's own pose.
         scatter: how far each joint may be from its posture, either way [rad].
+        tilt: how far the whole body may be turned about any axis [rad].
     """
 
     name: str
@@ -54,6 +55,7 @@ class StartSettings:
     angular_velocity_z: Range
     postures: dict[str, Posture] = field(default_factory=dict)
     scatter: NonNegative = 0.0
+    tilt: NonNegative = 0.0
     description: str = ""
 
 
@@ -66,12 +68,14 @@ class Start:
         velocity: (3,) of the centre of mass [m/s].
         angular_velocity: (3,) of the whole body [rad/s].
         pose: (nu,) [rad]; None leaves it to the behaviour.
+        tilt: (3,) rotation vector of the whole body [rad].
     """
 
     pitch: float
     velocity: Array
     angular_velocity: Array
     pose: Array | None = None
+    tilt: Array = field(default_factory=lambda: np.zeros(3))
 
 
 def draw(
@@ -105,8 +109,18 @@ def draw(
     pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
     pose += generator.uniform(-settings.scatter, settings.scatter, len(pose))
     return replace(
-        start, pitch=start.pitch + posture.pitch, pose=np.clip(pose, *model.joint_range.T)
+        start,
+        pitch=start.pitch + posture.pitch,
+        pose=np.clip(pose, *model.joint_range.T),
+        tilt=_tilt(settings.tilt, generator),
     )
+
+
+def _tilt(largest: float, generator: np.random.Generator) -> Array:
+    """A turn about any axis (3,), at most `largest` [rad]."""
+    way = generator.normal(size=3)
+    length = sqrt(dot(way, way))
+    return way * (generator.uniform(0.0, largest) / length)
 
 
 def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
@@ -133,7 +147,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     mj = model.mj
     mujoco.mj_resetData(mj, data)
     data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
-    data.qpos[3:7] = usual.orientation
+    data.qpos[3:7] = advance(usual.orientation, start.tilt)
     mujoco.mj_kinematics(mj, data)
     data.qpos[2] -= _clearance(model, data) + SINK
     mujoco.mj_kinematics(mj, data)

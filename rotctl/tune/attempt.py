@@ -4,8 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, degrees, pi
 
+from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
-from rotctl.metrics.rolling import measure
+from rotctl.errors import InputError
+from rotctl.metrics.rolling import RollingCriteria, measure
 from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -30,11 +32,15 @@ def attempt(item: Attempt) -> Rolled:
     Raises:
         InputError: the config does not make a run.
     """
-    config = item.config
+    config, behaviour, criteria = item.config, item.config.behaviour, item.config.criteria
+    if not isinstance(behaviour, RollingSettings) or not isinstance(criteria, RollingCriteria):
+        raise InputError(
+            f"behaviour={behaviour.name} is of kind {behaviour.kind}; a search is for kind rolling"
+        )
     scenario = build(config)
-    commanded, period = config.behaviour.angular_velocity, 1.0 / config.controller.rate
+    commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
-    metrics = measure(buffer.arrays(), config.criteria, commanded, period)
+    metrics = measure(buffer.arrays(), criteria, commanded, period)
     return Rolled(
         survived=metrics.duration,
         wanted=config.duration,

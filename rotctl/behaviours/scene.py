@@ -1,0 +1,53 @@
+"""What aims and conditions of a stage look at."""
+
+from dataclasses import dataclass
+
+from rotctl.mechanics.excursion import Excursion, ExcursionName
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.rotations import Array
+
+
+@dataclass(frozen=True)
+class Begin:
+    """How a stage began.
+
+    Attributes:
+        time: [s].
+        com: (3,) centre of mass [m].
+        place, orientation: (nbody, 3) [m] and (nbody, 4) of all bodies.
+        excursion: AE and phase.
+    """
+
+    time: float
+    com: Array
+    place: Array
+    orientation: Array
+    excursion: Excursion
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One instant of a staged behaviour.
+
+    Attributes:
+        state: that the controller sees.
+        axes: (3, 3) rows are the behaviour's forward, left and up, world.
+        excursion: AE and phase now, measured by `measure`.
+        begin: of the stage.
+        target: in-plane excursion that the behaviour is to reach since its start [rad].
+        turned: in-plane excursion since its start [rad].
+        airborne: how long nothing has touched the ground [s].
+        still: how long nothing has moved faster than `SLOW` [s].
+    """
+
+    model: Model
+    state: State
+    axes: Array
+    excursion: Excursion
+    measure: ExcursionName
+    begin: Begin
+    target: float
+    turned: float
+    airborne: float
+    still: float

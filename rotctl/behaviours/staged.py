@@ -1,0 +1,296 @@
+"""Behaviours as stages: what is wanted changes when the motion has come so far, not with time.
+
+A stage has poses, tasks with aims, and a condition that ends it; see `rotctl.behaviours.aims` and
+`rotctl.behaviours.until`. The last stage goes on. Everything is measured along the behaviour's
+forward, left and up; the phase is the excursion about left, [AlBorno2014].
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.aims import Aim
+from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.behaviours.facing import frame_of
+from rotctl.behaviours.scene import Begin, Scene
+from rotctl.behaviours.until import Until
+from rotctl.control import Command, ControllerSettings
+from rotctl.control.kinds import KINDS, kind
+from rotctl.control.supervisor import SupervisorName
+from rotctl.control.task import TASK, Tasks, task
+from rotctl.linear import product
+from rotctl.mechanics import excursion
+from rotctl.mechanics.excursion import Excursion, ExcursionSettings
+from rotctl.mechanics.model import SIDES, Model, body_ids
+from rotctl.mechanics.state import State
+from rotctl.motion import Poses, RollAbout, make_pose_pair
+from rotctl.rotations import Array, advance, cross, dot
+from rotctl.settings import STRICT, Finite, Vector
+
+SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
+
+
+@validated(frozen=True, config=STRICT)
+class TaskSettings:
+    """One task of a stage.
+
+    Attributes:
+        kind: see `rotctl.control.kinds`.
+        aim: what it aims at; none for `limits`.
+        body: that it is about; a name without a side stands for a task on both sides.
+        point: of the body, in its frame [m]; for `limits` the margin is its first.
+    """
+
+    kind: str
+    aim: Aim | None = None
+    body: str = ""
+    point: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise ValueError(f"no kind {self.kind!r}; valid: {', '.join(KINDS)}")
+        if (self.aim is None) != (self.kind == "limits"):
+            raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
+        if bool(self.body) != (self.kind in ("point", "attitude")):
+            raise ValueError(f"a task of kind {self.kind} has {'no' if self.body else 'a'} body")
+
+
+@validated(frozen=True, config=STRICT)
+class Stage:
+    """One part of a behaviour.
+
+    Attributes:
+        poses: key poses over the phase.
+        tasks: by name; the controller has gains under the same names.
+        until: what ends it; nothing for the last stage alone.
+        supervisor: in place of the controller's.
+        held_out: bodies whose contacts control may not use.
+    """
+
+    name: str
+    poses: Poses
+    tasks: dict[str, TaskSettings]
+    until: Until | None = None
+    supervisor: SupervisorName | None = None
+    held_out: tuple[str, ...] = ()
+
+
+@validated(frozen=True, config=STRICT)
+class StagedSettings:
+    """A behaviour as stages.
+
+    Attributes:
+        roll_about: the trunk's axis that lies to the left.
+        heading: of forward, from +x towards +y [deg].
+        target_excursion: how far to turn about left [deg].
+    """
+
+    name: str
+    kind: Literal["staged"]
+    roll_about: RollAbout
+    heading: Finite
+    stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
+    target_excursion: Finite = 0.0
+    source: str = ""
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        for stage in self.stages[:-1]:
+            if stage.until is None:
+                raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
+
+    @property
+    def commanded(self) -> dict[str, float]:
+        """What is asked for, as columns of the summary [deg]."""
+        return {"target_excursion": self.target_excursion}
+
+    def make(
+        self, model: Model, control: ControllerSettings, measured: ExcursionSettings
+    ) -> "Staged":
+        """The behaviour of one run."""
+        return Staged(self, model, control, measured)
+
+
+@dataclass(frozen=True)
+class StagedMemory:
+    """What a staged behaviour remembers from one control step to the next.
+
+    Attributes:
+        stage: its number.
+        begin: of that stage.
+        first: excursion at the start of the run.
+        excursion: now.
+        airborne, still: for how long [s].
+    """
+
+    stage: int
+    begin: Begin
+    first: Excursion
+    excursion: Excursion
+    airborne: float = 0.0
+    still: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A stage, ready: its tasks, what fills them, and their places among the behaviour's."""
+
+    tasks: Tasks
+    fillers: list[tuple[int, str, Aim]]
+    slots: list[int]
+    held_out: NDArray[np.bool_]
+
+
+class Staged:
+    """A staged behaviour of one run."""
+
+    def __init__(
+        self,
+        settings: StagedSettings,
+        model: Model,
+        control: ControllerSettings,
+        measured: ExcursionSettings,
+    ) -> None:
+        """Prepare the stages.
+
+        Raises:
+            InputError: a body or a joint is not there, or a task has no gains.
+        """
+        self._settings, self._model, self._control = settings, model, control
+        self._measured, self._period = measured, 1.0 / control.rate
+        self._frame = frame_of(settings.roll_about, settings.heading)
+        self.axes = self._frame.axes
+        self._target = math.radians(settings.target_excursion)
+        found: dict[str, None] = {}
+        for stage in settings.stages:
+            for name, wanted in stage.tasks.items():
+                found.update(dict.fromkeys(_names(model, name, wanted)))
+            if stage.until:
+                stage.until.check(model)
+        self.tasks = tuple(found)
+        self._parts = [self._part(stage) for stage in settings.stages]
+        self._poses = [
+            make_pose_pair(model, stage.poses, f"behaviour.stages.{stage.name}.poses")
+            for stage in settings.stages
+        ]
+
+    def _part(self, stage: Stage) -> _Part:
+        model = self._model
+        rows: list[Tasks] = []
+        fillers: list[tuple[int, str, Aim]] = []
+        slots: list[int] = []
+        gains = gains_of(self._control, tuple(stage.tasks))
+        for name, wanted in stage.tasks.items():
+            key = f"behaviour.stages.{stage.name}.tasks.{name}.body"
+            bodies = body_ids(model.mj, [wanted.body], key) if wanted.body else [0]
+            for body, slot in zip(bodies, _names(model, name, wanted), strict=True):
+                if wanted.aim:
+                    wanted.aim.check(model)
+                    fillers.append((len(rows), wanted.kind, wanted.aim))
+                number = kind(wanted.kind).number
+                rows.append(task(number, gains[name], self.axes, body, wanted.point))
+                slots.append(self.tasks.index(slot))
+        held_out = model.excluded.copy()
+        held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
+        return _Part(np.concatenate([np.zeros(0, TASK), *rows]), fillers, slots, held_out)
+
+    def start(self, pitch: float) -> Placement:
+        """How a run starts at a pitch [rad] about left."""
+        tilt = pitch * self.axes[1]
+        return Placement(advance(self._frame.orientation, tilt), self._poses[0].start(pitch))
+
+    def begin(self, pitch: float, state: State) -> StagedMemory:
+        """Memory at the start."""
+        first = excursion.start(pitch, self.axes[1])
+        return StagedMemory(0, _begin(state, first), first, first)
+
+    def advance(self, before: StagedMemory, state: State) -> StagedMemory:
+        """Memory now, and the next stage where the present one's condition is met."""
+        left, measured = self.axes[1], self._measured
+        now = excursion.integrate(
+            before.excursion,
+            state.momentum.angular_velocity,
+            self._axis(state),
+            left,
+            self._period,
+            measured.correction_time,
+        )
+        now = excursion.keep_phase(now, self._turned(state), self._period, measured.phase_time)
+        slow = float(np.abs(state.velocity).max()) < SLOW
+        memory = replace(
+            before,
+            excursion=now,
+            airborne=0.0 if state.contacts.count else before.airborne + self._period,
+            still=before.still + self._period if slow else 0.0,
+        )
+        until = self._settings.stages[memory.stage].until
+        last = memory.stage + 1 == len(self._parts)
+        if last or until is None or not until.met(self._scene(memory, state)):
+            return memory
+        return replace(memory, stage=memory.stage + 1, begin=_begin(state, now))
+
+    def command(self, memory: StagedMemory, state: State) -> Command:
+        """What the present stage wants at this instant."""
+        part, stage = self._parts[memory.stage], self._settings.stages[memory.stage]
+        scene = self._scene(memory, state)
+        for i, kind_name, aim in part.fillers:
+            aim.fill(part.tasks[i], kind_name, scene)
+        pose_a, pose_b = self._poses[memory.stage].at(memory.excursion.phase)
+        return Command(
+            tasks=part.tasks,
+            pose_a=pose_a,
+            pose_b=pose_b,
+            forward=self.axes[0],
+            pose=self._control.pose,
+            contact=self._control.contact,
+            supervisor=stage.supervisor or self._control.supervisor,
+            thresholds=self._control.thresholds,
+            held_out=part.held_out,
+            slots=part.slots,
+        )
+
+    def signals(self, memory: StagedMemory, state: State) -> Signals:
+        """What the log keeps of it."""
+        now = memory.excursion
+        return Signals(now.angle, now.phase, self._axis(state), self.axes, memory.stage)
+
+    def _scene(self, memory: StagedMemory, state: State) -> Scene:
+        return Scene(
+            model=self._model,
+            state=state,
+            axes=self.axes,
+            excursion=memory.excursion,
+            measure=self._measured.measure,
+            begin=memory.begin,
+            target=self._target,
+            turned=memory.excursion.phase - memory.first.phase,
+            airborne=memory.airborne,
+            still=memory.still,
+        )
+
+    def _axis(self, state: State) -> Array:
+        """The trunk's axis (3,) that should stay to the left, unit, world."""
+        return product(state.trunk_axes, self._frame.trunk_axis)
+
+    def _turned(self, state: State) -> float:
+        """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
+        front = state.trunk_axes[:, 0]
+        across = dot(self.axes[1], cross(self._frame.front, front))
+        return math.atan2(across, dot(self._frame.front, front))
+
+
+def _names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
+    """A task's names: one for each side where its body stands for both."""
+    both = wanted.body and len(body_ids(model.mj, [wanted.body], f"tasks.{name}.body")) == 2
+    return [name + side for side in SIDES] if both else [name]
+
+
+def _begin(state: State, now: Excursion) -> Begin:
+    data = state.data
+    com = state.momentum.com
+    return Begin(state.time, com, data.xpos.copy(), data.xquat.copy(), now)

@@ -1,0 +1,75 @@
+"""The verdict of a run by its criteria: one kind of criteria for each class of motion."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from rotctl.metrics import orientation, rolling, standing
+from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.orientation import OrientationCriteria
+from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.standing import StandingCriteria
+
+Criteria = Annotated[
+    OrientationCriteria | RollingCriteria | StandingCriteria, Field(discriminator="kind")
+]
+COLUMNS = {c.name: c for c in (*rolling.COLUMNS, *standing.COLUMNS, *orientation.COLUMNS)}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A run in numbers.
+
+    Attributes:
+        reason: why it is no success; empty if it is one.
+        columns: of the summary row, by name.
+    """
+
+    reason: str
+    columns: dict[str, Any]
+
+
+def judge(
+    log: Arrays, criteria: Criteria, commanded: Mapping[str, float], period: float, wanted: float
+) -> Judgement:
+    """Judge a run.
+
+    Args:
+        log: arrays by schema path, a `RunLog` or a buffer's; may have no rows.
+        commanded: columns that tell what was asked for.
+        period: of the control [s].
+        wanted: how long the run was to be [s].
+    """
+    steps = len(floats(log, "trajectory/time"))
+    failures = int(np.count_nonzero(np.asarray(log["solver/status"]) == 2))
+    asked = dict(commanded)
+    if isinstance(criteria, RollingCriteria):
+        rolled = rolling.measure(log, criteria, commanded["angular_velocity_commanded"], period)
+        found, reason = asdict(rolled), rolling.failure_reason(rolled, criteria, wanted)
+        del found["stalled_at"]  # of people's interest in a reason alone
+    elif isinstance(criteria, StandingCriteria):
+        stood, asked = standing.measure(log, criteria, period), {}
+        found, reason = asdict(stood), standing.failure(stood, criteria)
+    else:
+        turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
+        found, reason = asdict(turned), orientation.failure(turned, criteria)
+    if steps * period < wanted - 1e-6:
+        reason = f"ended after {steps * period:.2f} of {wanted:g} s"
+    elif failures:
+        reason = f"every solver failed on {failures} control steps"
+    common = {"duration": steps * period, "torque_p99_fraction": _torque(log)}
+    return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
+
+
+def _torque(log: Arrays) -> float:
+    """99th percentile of |torque| / limit over joints and time; NaN without rows."""
+    torque = np.abs(floats(log, "trajectory/ctrl"))
+    return (
+        float(np.percentile(torque / floats(log, "model/torque_limit"), 99))
+        if len(torque)
+        else math.nan
+    )

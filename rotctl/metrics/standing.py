@@ -1,0 +1,106 @@
+"""A standing run in numbers: what it stands on, how upright and how still, whether it stayed up."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.metrics.columns import Arrays, Column, floats, in_frame
+from rotctl.settings import STRICT, Positive
+
+COLUMNS = (
+    Column("lean_most", "Largest lean of the trunk", "deg"),
+    Column("lean_end", "Lean of the trunk over the last second", "deg"),
+    Column("sway", "Furthest of the centre of mass from where it began", "m"),
+    Column("speed_end", "Speed of the centre of mass over the last second", "m/s"),
+    Column("other_contact", "Time with anything but the feet on the ground", "s"),
+    Column("height_least", "Lowest of the centre of mass, as a share of its height at first", ""),
+)
+
+
+@validated(frozen=True, config=STRICT)
+class StandingCriteria:
+    """Limits of standing; see `conf/criteria/standing.yaml`.
+
+    Attributes:
+        feet: bodies that may touch the ground.
+        height: least height of the centre of mass, as a share of that at the start [-].
+        lean: of the trunk over the last second [deg].
+        speed: of the centre of mass over the last second [m/s].
+    """
+
+    name: str
+    kind: Literal["standing"]
+    feet: tuple[str, ...]
+    height: Positive
+    lean: Positive
+    speed: Positive
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class StandingMetrics:
+    """What a log says of standing; see `COLUMNS`. NaN where it has no rows."""
+
+    lean_most: float
+    lean_end: float
+    sway: float
+    speed_end: float
+    other_contact: float
+    height_least: float
+
+
+def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingMetrics:
+    """Measure a run; `period` is the control's [s]."""
+    com = in_frame(log, "trajectory/com")
+    if not len(com):
+        return StandingMetrics(*[math.nan] * len(COLUMNS))
+    up = floats(log, "trajectory/trunk_axes")[:, 2, 2]
+    lean = np.degrees(np.arccos(np.clip(up, -1.0, 1.0)))
+    velocity = floats(log, "trajectory/com_velocity")
+    speed = np.sqrt((velocity**2).sum(axis=1))
+    height = com[:, 2] - floats(log, "trajectory/ground_height")
+    sway = np.sqrt(((com[:, :2] - com[0, :2]) ** 2).sum(axis=1))
+    last = slice(-round(1.0 / period), None)
+    return StandingMetrics(
+        lean_most=float(lean.max()),
+        lean_end=float(lean[last].max()),
+        sway=float(sway.max()),
+        speed_end=float(speed[last].max()),
+        other_contact=float(_on_others(log, criteria.feet).sum() * period),
+        height_least=float(height.min() / height[0]),
+    )
+
+
+def _on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
+    """(steps,) whether anything but these bodies touches the ground."""
+    names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/body"]).tolist()]
+    allowed = [-1, *(i for i, name in enumerate(names) if name in feet)]
+    others = ~np.isin(np.asarray(log["contacts/body"]), allowed)
+    return np.asarray(others.any(axis=1))
+
+
+def failure(metrics: StandingMetrics, criteria: StandingCriteria) -> str:
+    """Why it did not stay up; empty if it did."""
+    m, c = metrics, criteria
+    rules = (
+        (
+            m.other_contact == 0.0,
+            f"touched the ground with more than the feet for {m.other_contact:.2f} s",
+        ),
+        (m.height_least > c.height, f"sank to {m.height_least:.2f} of its height"),
+        (m.lean_end < c.lean, f"leans by {m.lean_end:.0f} deg at the end"),
+        (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),
+    )
+    return next((reason for kept, reason in rules if not kept), "")
+
+
+def lines(summary: dict[str, object]) -> list[tuple[str, str]]:
+    """What people want to read of a summary row: label and text."""
+    return [
+        ("lean", "{lean_most:.0f} deg at most, {lean_end:.0f} at the end"),
+        ("sway", "{sway:.2f} m at most, {speed_end:.2f} m/s at the end"),
+        ("contact", "{other_contact:.2f} s with more than the feet"),
+    ]
