@@ -22,7 +22,7 @@ from rotctl.scenario import Scenario, build
 from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
 
-SUMMARY_NAME = "summary.json"
+SUMMARY_NAME, CONFIG_NAME = "summary.json", "config.yaml"
 Summary = dict[str, Any]
 
 
@@ -31,7 +31,7 @@ class Result:
     """A run on disk.
 
     Attributes:
-        folder: holds `run.h5` and `summary.json`.
+        folder: holds `run.h5`, `summary.json` and `config.yaml`.
         summary: the summary row.
         already_there: True if nothing was simulated because the run was there.
         replaced: why the log that was there was not used; empty if it was, or there was none.
@@ -95,10 +95,12 @@ class Made:
     Attributes:
         summary: the summary row.
         log: the bytes of its `run.h5`.
+        config: as YAML.
     """
 
     summary: Summary
     log: bytes
+    config: str
 
 
 def make(config: Config) -> Made:
@@ -118,7 +120,7 @@ def publish(made: Made, folder: Path) -> None:
     """
     with files.folder(folder, linked=False):
         write_log(folder / LOG_NAME, made.log)
-        _write_summary(folder / SUMMARY_NAME, made.summary)
+        _write_beside(folder, made.summary, made.config)
 
 
 def built(config: Config) -> Scenario:
@@ -132,7 +134,7 @@ def built(config: Config) -> Scenario:
 
 
 def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
-    config = scenario.config
+    config, text = scenario.config, to_yaml(scenario.config)
     begin = time.perf_counter()
     buffer, breakdown = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
@@ -142,14 +144,14 @@ def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
         model_xml=scenario.model.mjcf,
         attributes={
             **origin(scenario),
-            "config": to_yaml(config),
+            "config": text,
             "run_id": scenario.run_id,
             "seed": config.seed,
             "wall_time": wall,
             "outcome": summary,
         },
     )
-    return Made(summary, log)
+    return Made(summary, log, text)
 
 
 def origin(scenario: Scenario) -> dict[str, Any]:
@@ -211,7 +213,7 @@ def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall
 
 
 def stored(folder: Path, run_id: str) -> RunLog:
-    """The run in `folder`, all of it checked; puts `summary.json` back if a kill prevented it.
+    """The run in `folder`, all of it checked; puts the files beside it back if a kill prevented them.
 
     Raises:
         LogError: the log there is not whole, or of another run.
@@ -220,8 +222,8 @@ def stored(folder: Path, run_id: str) -> RunLog:
     log.verify()
     if log.attributes["run_id"] != run_id:
         raise LogError(f"{log.path}: is run {log.attributes['run_id']}, expected {run_id}")
-    if not (folder / SUMMARY_NAME).exists():
-        _write_summary(folder / SUMMARY_NAME, log.outcome)
+    if not all((folder / name).exists() for name in (SUMMARY_NAME, CONFIG_NAME)):
+        _write_beside(folder, log.outcome, str(log.attributes["config"]))
     return log
 
 
@@ -237,5 +239,7 @@ def quiet() -> Iterator[list[str]]:
         mujoco.set_mju_user_warning(before)
 
 
-def _write_summary(path: Path, summary: Summary) -> None:
-    files.replace(path, f"{json.dumps(summary, indent=2)}\n".encode())
+def _write_beside(folder: Path, summary: Summary, config: str) -> None:
+    """What people and other programs read without HDF5; the log has all of it."""
+    files.replace(folder / SUMMARY_NAME, f"{json.dumps(summary, indent=2)}\n".encode())
+    files.replace(folder / CONFIG_NAME, config.encode())

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from typing import Any
@@ -23,6 +24,8 @@ from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
+
+DESCRIPTIVE = ("description", "source", "colour")
 
 
 @dataclass(frozen=True)
@@ -104,14 +107,32 @@ def model_of(config: Config) -> Model:
 
 
 def run_id(config: Config, model: Model) -> str:
-    """Hash of the resolved config, the log's schema version, the model and the clip followed.
+    """Hash of what acts: the config, the log's schema version, the model and the clip followed.
+
+    What only describes or colours does not act.
 
     Raises:
         InputError: there is no such clip.
     """
-    parts = {"config": to_dict(config), "schema": SCHEMA_VERSION, "model": model.mjcf}
+    parts = {
+        "config": _acting(to_dict(config)),
+        "schema": SCHEMA_VERSION,
+        "model": _without_looks(model.mjcf),
+    }
     reference = getattr(config.behaviour, "reference", None)
     if reference:
         parts["clip"] = asdict(load_clip(reference.clip))  # a name or path says not what is in it
     canonical = json.dumps(parts, sort_keys=True)
     return hashlib.sha256(canonical.encode()).hexdigest()[:12]
+
+
+@lru_cache(maxsize=8)
+def _without_looks(mjcf: str) -> str:
+    return re.sub(r' rgba="[^"]*"', "", mjcf)
+
+
+def _acting(part: Any) -> Any:
+    """Plain data without the keys that act on nothing."""
+    if isinstance(part, dict):
+        return {key: _acting(value) for key, value in part.items() if key not in DESCRIPTIVE}
+    return [_acting(value) for value in part] if isinstance(part, list | tuple) else part

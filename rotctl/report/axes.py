@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.metrics.columns import in_frame
 from rotctl.report.signals import Rates, Signals, torque_fractions
 from rotctl.report.timeline import Bar
 from rotctl.rotations import Array
@@ -17,14 +18,14 @@ GOOD, BAD = "#167a4c", "#be2026"
 
 def _three(axes: Any, time: Array, values: Array) -> None:
     """In-plane in front, out-of-plane behind."""
-    axes.plot(time, values[:, 0], color=ORANGE, label="x", lw=0.6)
-    axes.plot(time, values[:, 2], color=GREEN, label="z", lw=0.6)
-    axes.plot(time, values[:, 1], color=BLUE, label="y, in-plane", lw=1.0)
+    axes.plot(time, values[:, 0], color=ORANGE, label="forward", lw=0.6)
+    axes.plot(time, values[:, 2], color=GREEN, label="up", lw=0.6)
+    axes.plot(time, values[:, 1], color=BLUE, label="left, in-plane", lw=1.0)
 
 
 def momentum(axes: Any, log: RunLog, rows: slice, run: Signals) -> None:
     """Angular momentum."""
-    _three(axes, run.time, log["trajectory/angular_momentum"][rows])
+    _three(axes, run.time, in_frame(log, "trajectory/angular_momentum")[rows])
     legend(axes)
 
 
@@ -47,8 +48,8 @@ def in_plane(axes: Any, run: Signals) -> None:
 
 def out_of_plane(axes: Any, run: Signals) -> None:
     """Out-of-plane excursion."""
-    axes.plot(run.time, 360.0 * run.turns[:, 0], color=ORANGE, label="x (tilt)")
-    axes.plot(run.time, 360.0 * run.turns[:, 2], color=GREEN, label="z (heading)")
+    axes.plot(run.time, 360.0 * run.turns[:, 0], color=ORANGE, label="forward (tilt)")
+    axes.plot(run.time, 360.0 * run.turns[:, 2], color=GREEN, label="up (heading)")
     legend(axes)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from rotctl.log import RunLog
+from rotctl.metrics.columns import in_frame
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Moment:
 
 def turns_done(log: RunLog) -> Array:
     """In-plane excursion since the start of the run [rev]."""
-    angle = log["trajectory/angular_excursion"][:, 1]
+    angle = in_frame(log, "trajectory/angular_excursion")[:, 1]
     turns: Array = (angle - angle[:1]) / (2.0 * np.pi)
     return turns
 

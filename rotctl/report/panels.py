@@ -66,10 +66,10 @@ def panels(run: Signals, other: Signals | None) -> list[Panel]:
         _panel(
             "Velocity of the centre of mass",
             "m/s",
-            Line("forwards x", "achieved", time, run.velocity[:, 0]),
-            Line("sideways y", "second", time, run.velocity[:, 1]),
-            Line("up z", "third", time, run.velocity[:, 2]),
-            Line("commanded x", "commanded", ends, speed),
+            Line("forward", "achieved", time, run.velocity[:, 0]),
+            Line("left", "second", time, run.velocity[:, 1]),
+            Line("up", "third", time, run.velocity[:, 2]),
+            Line("commanded forward", "commanded", ends, speed),
             *over("velocity", 0),
         ),
         _panel(

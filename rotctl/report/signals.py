@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.log import RunLog
+from rotctl.metrics.columns import frame, in_frame
 from rotctl.rotations import Array
 
 TURN = 2.0 * math.pi  # [rad]
@@ -13,18 +15,18 @@ TURN = 2.0 * math.pi  # [rad]
 
 @dataclass(frozen=True)
 class Signals:
-    """Signals of one run, one row a control step.
+    """Signals of one run, one row a control step, along the behaviour's forward, left and up.
 
     Attributes:
         time: (n,) [s].
-        spin: (n, 3) whole-body angular velocity [rev/s]; in-plane is y.
-        turns: (n, 3) angular excursion; in-plane (y) since the start of the run [rev].
+        spin: (n, 3) whole-body angular velocity [rev/s]; in-plane is about left.
+        turns: (n, 3) angular excursion; in-plane since the start of the run [rev].
         velocity: (n, 3) of the centre of mass [m/s].
         blend: (n,).
         count: (n,) contacts with the ground.
         used: (n,) of these, kept by the supervisor.
         commanded_spin: in-plane [rev/s]; NaN where the outcome does not tell.
-        commanded_speed: along x [m/s]; likewise.
+        commanded_speed: forward [m/s]; likewise.
     """
 
     time: Array
@@ -49,15 +51,15 @@ class Rates:
 
 def signals(log: RunLog, rows: slice) -> Signals:
     """The signals of some rows."""
-    turns = log["trajectory/angular_excursion"] / TURN
+    turns = in_frame(log, "trajectory/angular_excursion") / TURN
     turns[:, 1] -= turns[:1, 1]
     filled = log["contacts/body"][rows] >= 0
     outcome = log.outcome
     return Signals(
         time=log["trajectory/time"][rows],
-        spin=log["trajectory/angular_velocity"][rows] / TURN,
+        spin=in_frame(log, "trajectory/angular_velocity")[rows] / TURN,
         turns=turns[rows],
-        velocity=log["trajectory/com_velocity"][rows],
+        velocity=in_frame(log, "trajectory/com_velocity")[rows],
         blend=log["trajectory/blend"][rows],
         count=log["contacts/count"][rows].astype(float),
         used=(log["contacts/used"][rows] & filled).sum(axis=1).astype(float),
@@ -74,9 +76,9 @@ def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
         weight: (3,) of the character, m g [N].
     """
     return Rates(
-        desired=log["trajectory/linear_momentum_rate_desired"][rows],
-        predicted=log["trajectory/linear_momentum_rate_predicted"][rows],
-        realised=_forces(log, rows).sum(axis=1) + weight,
+        desired=in_frame(log, "trajectory/linear_momentum_rate_desired")[rows],
+        predicted=in_frame(log, "trajectory/linear_momentum_rate_predicted")[rows],
+        realised=product(_forces(log, rows).sum(axis=1) + weight, frame(log).T),
     )
 
 
@@ -84,9 +86,9 @@ def angular_rates(log: RunLog, rows: slice) -> Rates:
     """Rates of the angular momentum about the centre of mass [N m]."""
     arms = log["contacts/position"][rows].astype(float) - log["trajectory/com"][rows, None]
     return Rates(
-        desired=log["trajectory/angular_momentum_rate_desired"][rows],
-        predicted=log["trajectory/angular_momentum_rate_predicted"][rows],
-        realised=np.cross(arms, _forces(log, rows)).sum(axis=1),
+        desired=in_frame(log, "trajectory/angular_momentum_rate_desired")[rows],
+        predicted=in_frame(log, "trajectory/angular_momentum_rate_predicted")[rows],
+        realised=product(np.cross(arms, _forces(log, rows)).sum(axis=1), frame(log).T),
     )
 
 
