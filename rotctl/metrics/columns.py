@@ -1,14 +1,25 @@
 """What a summary row's columns are called, and how metrics read a log."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
+from math import atan2
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.linear import product
 
-Arrays = Mapping[str, NDArray[np.generic]]
+
+class Arrays(Protocol):
+    """Arrays by schema path: a `RunLog`, or those of a buffer."""
+
+    def __getitem__(self, name: str, /) -> NDArray[Any]:
+        """One array."""
+        ...
+
+    def __contains__(self, name: object, /) -> bool:
+        """Whether there is one of that name."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -29,6 +40,12 @@ def frame(log: Arrays) -> NDArray[np.float64]:
     """(3, 3) rows are forward, left and up of the behaviour, world axes."""
     axes = floats(log, "command/axes") if "command/axes" in log else np.empty((0, 3, 3))
     return axes[0] if len(axes) else np.eye(3)
+
+
+def heading(log: Arrays) -> float:
+    """Of the behaviour's forward, from +x towards +y [rad]."""
+    x, y, _ = frame(log)[0].tolist()
+    return atan2(y, x)
 
 
 def in_frame(log: Arrays, name: str) -> NDArray[np.float64]:

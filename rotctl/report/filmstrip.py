@@ -10,6 +10,7 @@ from PIL import Image, ImageDraw
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
+from rotctl.metrics.columns import heading
 from rotctl.report import gl, stored_model
 from rotctl.report.frame import (
     FORCE_SCALE,
@@ -102,7 +103,7 @@ def _drawn(
     width, height = (OVERSAMPLING * side for side in size)
     states, shown = log["trajectory/qpos"], moments(log, rows)
     with scene.opened(model, backend, width, height) as stage:
-        stage.fit(states[rows])
+        stage.fit(states[rows], heading(log))
         pictures = [
             draw(stage, state, moment, size)
             for state, moment in zip(states[rows], shown, strict=True)

@@ -83,12 +83,14 @@ def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) ->
 def _metre_marks(
     pen: ImageDraw.ImageDraw, stage: "Scene", camera: "Camera", scale: float
 ) -> list[tuple[tuple[float, float], str]]:
-    """Ticks on the ground at whole metres; returns where which label goes."""
+    """Ticks on the ground at whole metres of the way; returns where which label goes."""
+    c, s = np.cos(stage.heading), np.sin(stage.heading)
     x, y, _ = camera.target
-    near = y - max(MARK_SIDE, stage.beside)
+    along, near = c * x + s * y, c * y - s * x - max(MARK_SIDE, stage.beside)
     labels = []
-    for metre in range(int(np.floor(x)) - 3, int(np.ceil(x)) + 4):
-        ends = [[metre, side, stage.ground(metre, side)] for side in (near, near + 0.1)]
+    for metre in range(int(np.floor(along)) - 3, int(np.ceil(along)) + 4):
+        places = [(c * metre - s * side, s * metre + c * side) for side in (near, near + 0.1)]
+        ends = [[*place, stage.ground(*place)] for place in places]
         (x0, y0), (x1, y1) = camera.pixels(np.array(ends)).tolist()
         if 0 < x0 < camera.width and y0 < camera.height:
             pen.line([x0, y0, x1, y1], (*_GROUND_INK, 255), round(1.5 * scale))

@@ -99,6 +99,7 @@ class Scene:
         self._distance = 0.0
         self._centre = 0.0  # [m] height of the camera's target above the ground
         self._view_in = SIDE
+        self.heading = 0.0  # of the way, from +x towards +y [rad]
         self.beside = 0.0  # [m] half the character's width across the way
         _light(model, width, height, shadows)
         _shade_left(model)
@@ -114,8 +115,12 @@ class Scene:
         self._sky = _gradient(SIDE, width, height)
         self._drawing: Any = None
 
-    def fit(self, states: Array) -> None:
-        """Choose one view and distance with which the character fits in all states (n, nq)."""
+    def fit(self, states: Array, heading: float = 0.0) -> None:
+        """Choose one view and distance with which the character fits in all states (n, nq).
+
+        Args:
+            heading: of the way, which goes to the right of the picture [rad].
+        """
         halves, low, high = np.zeros((len(states), 2)), 0.0, 0.0
         for i, state in enumerate(states):
             self._pose(state)
@@ -123,10 +128,13 @@ class Scene:
             ground = self.ground(0.5 * (least[0] + most[0]), self._data.subtree_com[1, 1])
             halves[i] = 0.5 * (most - least)[:2]
             low, high = min(low, least[2] - ground), max(high, most[2] - ground)
-        along, across = halves.mean(axis=0)
-        self._view_in = AHEAD if across > LONG * along else SIDE
+        self.heading = heading
+        turn = np.abs([[np.cos(heading), np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        along, across = turn @ halves.mean(axis=0)
+        chosen = AHEAD if across > LONG * along else SIDE
+        self._view_in = View(chosen.azimuth + heading, chosen.elevation)
         self._sky = _gradient(self._view_in, self.width, self.height)
-        self.beside = float(halves[:, 1].max())
+        self.beside = float((halves @ turn[1]).max())
         wide = float((halves @ np.abs(self._view_in.axes[0, :2])).max())
         half = max(0.5 * (high - low), wide * self.height / self.width, LEAST_HALF_HEIGHT)
         self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)

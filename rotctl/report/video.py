@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 
 from rotctl import files
 from rotctl.log import RunLog
+from rotctl.metrics.columns import heading
 from rotctl.report import encoder, gl, stored_model
 from rotctl.report.frame import INK, MOODS, PAPER, SOFT, Moment, draw, moments, typeface
 from rotctl.report.rows import at_rate, drawable, window
@@ -57,7 +58,7 @@ def video(
         files.replacing(out) as part,
         scene.opened(model, backend, *FRAME, shadows=False) as stage,
     ):
-        stage.fit(states[rows[:: 1 + len(rows) // FITTED]])
+        stage.fit(states[rows[:: 1 + len(rows) // FITTED]], heading(log))
         with encoder.encoding(program, part, size, RATE) as stream:
             for i, (row, moment) in enumerate(zip(rows, shown, strict=True)):
                 picture = draw(stage, states[row], moment, FRAME)
