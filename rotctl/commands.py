@@ -204,7 +204,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.results import experiments
-    from rotctl.sweep.engines import make_engine
+    from rotctl.sweep.workers import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
@@ -281,7 +281,7 @@ def tune(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
-    from rotctl.sweep.engines import make_engine
+    from rotctl.sweep.workers import make_engine
     from rotctl.tune import result
     from rotctl.tune.search import Watch, prepare, tune
 

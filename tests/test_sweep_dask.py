@@ -17,7 +17,8 @@ from rotctl.cli import main
 from rotctl.errors import InputError, RotctlError
 from rotctl.log import RunLog
 from rotctl.sweep import cluster as cluster_module
-from rotctl.sweep.engines import Failure, make_engine
+from rotctl.sweep.engines import Failure
+from rotctl.sweep.workers import make_engine
 
 pytest.importorskip("distributed", reason="Dask is not installed: pip install 'rotctl[cluster]'")
 

@@ -9,7 +9,8 @@ import sweep_tasks
 from sweep_cli import until
 
 from rotctl.errors import InputError
-from rotctl.sweep.engines import Failure, make_engine
+from rotctl.sweep.engines import Failure
+from rotctl.sweep.workers import make_engine
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from uuid import uuid4
 
 from rotctl.errors import InputError, RotctlError
-from rotctl.sweep.engines import Failure, attempt
+from rotctl.sweep.engines import Failure, carried_out
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -133,4 +133,4 @@ _LOCK = threading.Lock()
 def _one_at_a_time(task: Callable[[T], R], item: T) -> R | Failure:
     """MuJoCo's warnings and Hydra are one for a process: no two tasks in threads of it."""
     with _LOCK:
-        return attempt(task, item)
+        return carried_out(task, item)

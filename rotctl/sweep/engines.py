@@ -1,10 +1,10 @@
-"""Where tasks run: in processes here, or on the workers of a Dask scheduler; one contract."""
+"""What runs tasks, in processes here or on the workers of a Dask scheduler: the contract."""
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from rotctl.errors import InputError, RotctlError
+from rotctl.errors import RotctlError
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -55,30 +55,7 @@ class Engine(Protocol):
         ...
 
 
-def make_engine(jobs: int | None, scheduler: str | None) -> Engine:
-    """Local processes, or the workers of a Dask scheduler.
-
-    Args:
-        jobs: number of local processes; None: one for each CPU that this process may use.
-        scheduler: address of a Dask scheduler, such as `tcp://127.0.0.1:8786`; None: local.
-
-    Raises:
-        InputError: a bad number or address, Dask is not installed, or nobody answers there.
-    """
-    if scheduler is None:
-        from rotctl.sweep.local import LocalEngine
-
-        return LocalEngine(jobs)
-    if jobs is not None:
-        raise InputError(
-            f"--jobs={jobs}: is for local processes; with --scheduler, start as many workers"
-        )
-    from rotctl.sweep.cluster import connect
-
-    return connect(scheduler)
-
-
-def attempt(task: Callable[[T], R], item: T) -> R | Failure:
+def carried_out(task: Callable[[T], R], item: T) -> R | Failure:
     """Run a task in a worker; what it raises is its `Failure`."""
     try:
         return task(item)

@@ -18,7 +18,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
 from rotctl.errors import InputError
-from rotctl.sweep.engines import Failure, attempt
+from rotctl.sweep.engines import Failure, carried_out
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -155,7 +155,7 @@ def _serve(pipe: Connection) -> None:
         except (EOFError, OSError):
             return
         try:
-            answer = pickle.dumps(attempt(_call, message), pickle.HIGHEST_PROTOCOL)
+            answer = pickle.dumps(carried_out(_call, message), pickle.HIGHEST_PROTOCOL)
         except Exception as error:  # a result that cannot travel
             answer = pickle.dumps(Failure(f"{type(error).__name__}: {error}"))
         try:
