@@ -136,9 +136,14 @@ def built(config: Config) -> Scenario:
 def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
     config, text = scenario.config, to_yaml(scenario.config)
     begin = time.perf_counter()
-    buffer, breakdown = in_memory(scenario, progress)
+    buffer, ending = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
+<<<<<<< HEAD
     summary = summarise(scenario, buffer, breakdown, wall)
+=======
+    summary = summarise(scenario, buffer, ending, wall)
+    found = collect()
+>>>>>>> 618358b (The ground goes on for as long as a run needs, and a run that leaves it ends there)
     log = encode_run(
         buffer,
         model_xml=scenario.model.mjcf,
@@ -172,7 +177,7 @@ def in_memory(
     """Simulate, and write nothing; `progress` and `stop` are those of `simulate`.
 
     Returns:
-        The rows, and what broke down; empty if nothing did.
+        The rows, and what ended them early: a breakdown, or the end of the ground; else empty.
     """
     # What is not finite is found by the loop and told by the log, not by numpy on stderr.
     with np.errstate(all="ignore"), quiet() as warnings:
@@ -185,19 +190,27 @@ def in_memory(
         )
     # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
     heard = f"MuJoCo warns: {warnings[0]}" if warnings else ""
-    return outcome.buffer, outcome.breakdown or heard
+    broken = outcome.breakdown or heard
+    if not broken:
+        return outcome.buffer, outcome.left
+    ended = outcome.buffer.steps / scenario.config.controller.rate
+    return outcome.buffer, f"physics broke down at t = {ended:.2f} s: {broken}"
 
 
-def summarise(scenario: Scenario, buffer: TrajectoryBuffer, breakdown: str, wall: float) -> Summary:
-    """The summary row of a simulated run; `wall` is the time the loop took [s]."""
+def summarise(scenario: Scenario, buffer: TrajectoryBuffer, ending: str, wall: float) -> Summary:
+    """The summary row of a simulated run.
+
+    Args:
+        ending: what ended it early; empty if nothing did.
+        wall: the time the loop took [s].
+    """
     config = scenario.config
     period = 1.0 / config.controller.rate
     judgement = judge(
         buffer.arrays(), config.criteria, config.behaviour.commanded, period, config.duration
     )
-    columns, reason = judgement.columns, judgement.reason
-    if breakdown:
-        reason = f"physics broke down at t = {columns['duration']:.2f} s: {breakdown}"
+    columns = judgement.columns
+    reason = ending or judgement.reason
     row = {
         "run_id": scenario.run_id,
         "behaviour": config.behaviour.name,

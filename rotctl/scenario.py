@@ -19,6 +19,7 @@ from rotctl.mechanics import model as models
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
+from rotctl.mechanics.terrain import FASTEST
 from rotctl.motion import load_clip
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
@@ -103,7 +104,8 @@ def model_of(config: Config) -> Model:
     """
     terrain = config.terrain
     seed = config.seed if terrain.seeded else 0
-    return _model(config.character, terrain, config.physics, config.controller.rate, seed)
+    reach = 0.0 if terrain.endless else FASTEST * config.duration
+    return _model(config.character, terrain, config.physics, config.controller.rate, seed, reach)
 
 
 def run_id(config: Config, model: Model) -> str:

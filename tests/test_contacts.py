@@ -160,7 +160,6 @@ def test_self_contacts_beside_ground_contacts(cone, world):
     assert np.abs(contact_jacobian(cone, data, contacts) - expected).max() < 1e-11
 
 
-def test_friction_is_the_larger_of_the_two(world, supported):
+def test_friction_is_the_ground_s(world, supported):
     state = world.state(supported[0])
-    larger = max(world.config.terrain.friction, world.config.character.friction)
-    assert (state.contacts.friction == larger).all()
+    assert (state.contacts.friction == world.config.terrain.friction).all()

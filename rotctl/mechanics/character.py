@@ -42,7 +42,10 @@ class Geom:
 
 @validated(frozen=True, config=STRICT)
 class Body:
-    """A rigid segment; `mirror` makes a left one as written and a right one reflected."""
+    """A rigid segment; `mirror` makes a left one as written and a right one reflected.
+
+    `position` [m] is in the parent's frame.
+    """
 
     name: str
     geoms: tuple[Geom, ...]
@@ -64,7 +67,6 @@ class Character:
     joint_damping: NonNegative
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]
-    friction: Positive
     trunk: Annotated[tuple[str, ...], Field(min_length=1)]
     exclude_from_control: tuple[str, ...]
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
@@ -78,7 +80,8 @@ def add_character(spec: mujoco.MjSpec, character: Character) -> None:
     Motors are in the order of the degrees of freedom, so that dof 6 + i belongs to motor i.
 
     Raises:
-        InputError: a body names an unknown parent, or a collision pair an unknown body.
+        InputError: a body names an unknown parent, the root has a position, or a collision pair
+            an unknown body.
     """
     built: dict[str, mujoco.MjsBody] = {}
     geoms: dict[str, list[tuple[str, str]]] = {}
@@ -119,6 +122,11 @@ def _add_body(
     built: dict[str, mujoco.MjsBody],
 ) -> mujoco.MjsBody:
     if body.parent is None:
+        if any(body.position):
+            raise InputError(
+                f"character body {body.name!r} has no parent, so that its place is "
+                "character.root_height: leave out its position"
+            )
         made = spec.worldbody.add_body(name=body.name, pos=[0.0, 0.0, character.root_height])
         made.add_freejoint(name="root")
     else:
@@ -160,7 +168,6 @@ def _add_geom(
         contype=CHARACTER_CONTACT if solid else 0,
         conaffinity=GROUND_CONTACT if solid else 0,
         condim=3,
-        friction=[character.friction, 0.0, 0.0],
         rgba=[*(geom.colour or body.colour), 1.0],
         **(
             {"pos": _mirrored(geom.start, side)}

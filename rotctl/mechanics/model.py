@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
+from rotctl.mechanics import pair_limit
 from rotctl.mechanics.character import Character, add_character
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
@@ -78,15 +79,18 @@ def build(
     physics: Physics,
     control_rate: float,
     seed: int = 0,
+    reach: float = 60.0,
 ) -> Model:
     """Compile a model.
 
     Args:
         control_rate: [Hz]; the physics step is 1 / (control_rate * substeps).
         seed: of a terrain that is drawn at random.
+        reach: how far ahead of the start there is ground at least [m].
 
     Raises:
-        InputError: the numbers do not make a model, or the model is not as tall as it says.
+        InputError: the numbers do not make a model, the model does not stand as tall as it
+            says, or a body could touch more of the ground than the engine sees.
     """
     spec = mujoco.MjSpec()
     spec.modelname = character.name
@@ -94,7 +98,7 @@ def build(
     physics.set_options(spec, control_rate)
     spec.visual.global_.offwidth = 1920
     spec.visual.global_.offheight = 1080
-    ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]))
+    ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]), reach)
     add_tiles(spec)
     try:
         added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
@@ -107,6 +111,7 @@ def build(
             f"character {character.name!r} on terrain {terrain.name!r} does not compile: {reason}"
         ) from None
     _check(mj, character)
+    pair_limit.check(mj, character.name, terrain.name)
     trunk = np.array([body_id(mj, name, "character.trunk") for name in character.trunk])
     excluded = np.zeros(mj.nbody, dtype=bool)
     for name in character.exclude_from_control:
@@ -161,6 +166,11 @@ def _check(mj: mujoco.MjModel, character: Character) -> None:
         raise InputError(
             f"character.height is {character.height:g} m, but the bodies stand "
             f"{height[1] - height[0]:.3f} m tall"
+        )
+    if abs(height[0]) > 0.02:
+        raise InputError(
+            f"character.root_height={character.root_height:g}: then the soles are at "
+            f"{height[0]:.3f} m, they must stand at 0"
         )
 
 

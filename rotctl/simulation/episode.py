@@ -14,7 +14,9 @@ from rotctl.behaviours.behaviour import Behaviour, Signals
 from rotctl.control import Command, Controller, Decision
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.model import Model
+from rotctl.mechanics.pair_limit import crowded
 from rotctl.mechanics.state import State
+from rotctl.mechanics.terrain import Ground
 from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces
 from rotctl.simulation.start import Start, place
@@ -86,11 +88,12 @@ class Moment:
 
 
 class Episode:
-    """An iterator over moments that ends where the physics breaks down.
+    """An iterator over moments that ends where the physics breaks down, or the ground ends.
 
     Attributes:
         data: MuJoCo's, which a reader must leave alone.
-        breakdown: why it ended; empty before.
+        breakdown: what broke down; empty if nothing did.
+        left: where the character left the ground; empty if it did not.
     """
 
     def __init__(self, parts: Parts, mark: Mark = lambda stage: None) -> None:
@@ -99,7 +102,7 @@ class Episode:
         Args:
             mark: called at the end of each of `STAGES`, for a clock.
         """
-        self.breakdown = ""
+        self.breakdown = self.left = ""
         self._parts, self._mark = parts, mark
         self.data = mujoco.MjData(parts.model.mj)
         usual = parts.behaviour.start(parts.start.pitch)
@@ -118,8 +121,12 @@ class Episode:
                 return
             outside = parts.disturbance.apply(data, period)
             mark("physics")
+            crowd = crowded(model.mj, data)
             state = controller.read(data)
             mark("state")
+            self.left = _left(model.ground, state)
+            if self.left:
+                return
             if memory is None:
                 memory = behaviour.begin(parts.start.pitch, state)
             memory = behaviour.advance(memory, state)
@@ -130,7 +137,19 @@ class Episode:
             mark("decision")
             forces = parts.stepper.advance(data, decision.torque, state.contacts)
             x, y, _ = state.momentum.com.tolist()
-            height, remark = model.ground.height(x, y), parts.stepper.remark()
+            height = model.ground.height(x, y)
+            remark = "; ".join(filter(None, (crowd, parts.stepper.remark())))
             mark("physics")
             yield Moment(state, command, signals, blend, decision, outside, forces, height, remark)
             blend = decision.blend
+
+
+def _left(ground: Ground, state: State) -> str:
+    """That the centre of mass has left the ground, and where; empty while it has not."""
+    x, y, _ = state.momentum.com.tolist()
+    if ground.extent.has(x, y):
+        return ""
+    return (
+        f"left the ground at t = {state.time:.2f} s, x = {x:.2f} m, y = {y:.2f} m: "
+        f"it reaches {ground.extent}"
+    )

@@ -15,11 +15,13 @@ class Outcome:
 
     Attributes:
         buffer: every control step whose state could be trusted.
-        breakdown: why it ended early; empty if it ran to its end.
+        breakdown: what broke down, so that it ended early; empty if nothing did.
+        left: where the character left the ground, so that it ended early; empty if it did not.
     """
 
     buffer: TrajectoryBuffer
     breakdown: str
+    left: str = ""
 
 
 def simulate(
@@ -64,5 +66,5 @@ def simulate(
         progress()
         if stop(moment) or done == steps:
             return Outcome(buffer.trimmed(done), parts.stepper.complaint(episode.data))
-    buffer.add_event(done / rate, episode.breakdown)
-    return Outcome(buffer.trimmed(done), episode.breakdown)
+    buffer.add_event(done / rate, episode.breakdown or episode.left)
+    return Outcome(buffer.trimmed(done), episode.breakdown, episode.left)

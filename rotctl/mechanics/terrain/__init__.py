@@ -4,7 +4,14 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rotctl.mechanics.terrain.ground import CHARACTER_CONTACT, GROUND_CONTACT, Ground, add_tiles
+from rotctl.mechanics.terrain.ground import (
+    CHARACTER_CONTACT,
+    FASTEST,
+    GROUND_CONTACT,
+    Extent,
+    Ground,
+    add_tiles,
+)
 from rotctl.mechanics.terrain.hazards import Hazards
 from rotctl.mechanics.terrain.plane import Flat, Plane, Slope
 from rotctl.mechanics.terrain.stairs import Stairs
@@ -14,7 +21,9 @@ Terrain = Annotated[Flat | Hazards | Slope | Stairs | Uneven, Field(discriminato
 
 __all__ = [
     "CHARACTER_CONTACT",
+    "FASTEST",
     "GROUND_CONTACT",
+    "Extent",
     "Flat",
     "Ground",
     "Hazards",

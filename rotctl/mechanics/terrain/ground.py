@@ -1,14 +1,45 @@
 """What every ground can be asked, and how it looks."""
 
-from typing import Protocol
+from dataclasses import dataclass
+from math import inf
+from typing import Annotated, Protocol
 
 import mujoco
+from pydantic import Field
 
 from rotctl.rotations import Array
+from rotctl.settings import Positive
+
+Friction = Annotated[Positive, Field(le=10)]  # sliding friction of ground and character [-]
 
 CHARACTER_CONTACT = 1  # contype of the character's geoms
 GROUND_CONTACT = 2  # contype of the ground's geoms
+GROUND_PRIORITY = 1  # above the character's 0: a contact has the friction of the ground alone
 FLOOR_DEPTH = 1.0  # [m] thickness of boxes; deep enough that nothing falls through
+FASTEST = 3.0  # [m/s] ground is made as far ahead as a run comes at it; rolls average at most 2.3
+BEHIND = 6.0  # [m] of it behind the start
+WIDTH = 12.0  # [m] across the way: a metre more to either side than any criterion lets one drift
+
+
+@dataclass(frozen=True)
+class Extent:
+    """Where there is ground: x from `begin` to `end`, `aside` to either side of y = 0 [m]."""
+
+    begin: float = -inf
+    end: float = inf
+    aside: float = inf
+
+    def has(self, x: float, y: float) -> bool:
+        """Whether world (x, y) [m] is on it; no number that is not finite is."""
+        return self.begin <= x <= self.end and abs(y) <= self.aside
+
+    def __str__(self) -> str:
+        return (
+            f"from x = {self.begin:.4g} to {self.end:.6g} m and {self.aside:.4g} m to either side"
+        )
+
+
+EVERYWHERE = Extent()
 
 
 class Ground(Protocol):
@@ -17,6 +48,11 @@ class Ground(Protocol):
     @property
     def slope(self) -> float:
         """Climb of the line of travel [rad]; 0 where it only goes up and down."""
+        ...
+
+    @property
+    def extent(self) -> Extent:
+        """Where it is; a run ends where the character leaves it."""
         ...
 
     def height(self, x: float, y: float) -> float:
@@ -53,6 +89,7 @@ def add_geom(spec: mujoco.MjSpec, name: str, friction: float, **shape: object) -
         name=name,
         contype=GROUND_CONTACT,
         conaffinity=CHARACTER_CONTACT,
+        priority=GROUND_PRIORITY,
         friction=[friction, 0.0, 0.0],
         **({"material": "tiles"} | shape),
     )

@@ -1,7 +1,10 @@
 """Level ground with hazards to roll over: fixed low bars across the way, and loose boxes."""
 
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
-from math import cos, sin
+from functools import cached_property
+from math import ceil, cos, hypot, sin
 from typing import Annotated, ClassVar, Literal
 
 import mujoco
@@ -9,23 +12,35 @@ import numpy as np
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.mechanics.terrain.ground import CHARACTER_CONTACT, GROUND_CONTACT, add_geom
+from rotctl.errors import InputError
+from rotctl.mechanics.terrain.ground import (
+    BEHIND,
+    CHARACTER_CONTACT,
+    GROUND_CONTACT,
+    GROUND_PRIORITY,
+    WIDTH,
+    Extent,
+    Friction,
+    add_geom,
+)
 from rotctl.mechanics.terrain.plane import Plane
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, NonNegative, Positive, Range
 
 FLOOR_PART = 0.05  # [m] of a bar that is below the ground
+MOST_THINGS = 18_000  # an hour of one every 60 cm
+MOST_BOXES = 30  # each is six more degrees of freedom of every step
 BAR_COLOUR = (0.36, 0.42, 0.50, 1.0)
 BOX_COLOUR = (0.80, 0.60, 0.36, 1.0)
 
 
 @validated(frozen=True, config=STRICT)
 class Hazards:
-    """Bars and boxes, one after the other along the way in random order.
+    """Bars and boxes, one after the other along the way, as far as the run needs.
 
     Attributes:
-        bars, boxes: how many of them.
-        bar_height, bar_depth, bar_width: up, along the way and across it [m].
+        bars, boxes: how many of either there are in each stretch, in random order.
+        bar_height, bar_depth: up and along the way [m]; bars lie right across it.
         bar_turn, box_turn: largest angle against the way, to either side [rad].
         box_edge: edges of a box, each drawn by itself [m].
         box_density: [kg/m3].
@@ -36,39 +51,61 @@ class Hazards:
 
     name: str
     seeded: ClassVar[bool] = True
+    endless: ClassVar[bool] = False
     kind: Literal["hazards"]
-    friction: Positive
+    friction: Friction
     bars: Annotated[int, Strict(), Field(ge=0, le=200)]
     bar_height: Range
     bar_depth: Range
-    bar_width: Positive
     bar_turn: NonNegative
-    boxes: Annotated[int, Strict(), Field(ge=0, le=30)]
+    boxes: Annotated[int, Strict(), Field(ge=0, le=200)]
     box_edge: Range
     box_density: Positive
     box_aside: NonNegative
     box_turn: NonNegative
-    spacing: Positive
+    spacing: Annotated[Positive, Field(ge=0.1)]
     run_in: NonNegative
     description: str = ""
 
-    def make(self, generator: np.random.Generator) -> "HazardousGround":
-        """The ground of one run, drawn from `generator`."""
-        kinds = generator.permutation([True] * self.bars + [False] * self.boxes)
-        bars, boxes = [], []
-        for i, is_bar in enumerate(kinds):
+    def make(self, generator: np.random.Generator, reach: float) -> "HazardousGround":
+        """The ground of one run that comes `reach` [m] ahead, drawn from `generator`.
+
+        Raises:
+            InputError: that takes too many bars or boxes.
+        """
+        count = max(0, ceil((reach - self.run_in) / self.spacing))
+        where = f"to x = {reach:g} m, where a run of this duration may come, at most"
+        if count > MOST_THINGS:
+            raise InputError(
+                f"terrain.spacing={self.spacing:g}: {self.name} would be {count} things {where} "
+                f"{MOST_THINGS} can be; choose a shorter duration or a larger spacing"
+            )
+        bars: list[Cuboid] = []
+        boxes: list[Cuboid] = []
+        for i, is_bar in zip(range(count), self._kinds(generator), strict=False):
             x = self.run_in + self.spacing * (i + generator.uniform(0.25, 0.75))
             if is_bar:
                 depth = generator.uniform(*self.bar_depth)
                 height = generator.uniform(*self.bar_height)
                 turn = generator.uniform(-self.bar_turn, self.bar_turn)
-                bars.append(Cuboid((x, 0.0), (depth, self.bar_width, height), turn))
+                bars.append(Cuboid((x, 0.0), (depth, WIDTH, height), turn))
             else:
                 y = generator.uniform(-self.box_aside, self.box_aside)
                 length, width, height = generator.uniform(*self.box_edge, 3)
                 turn = generator.uniform(-self.box_turn, self.box_turn)
                 boxes.append(Cuboid((x, y), (length, width, height), turn))
-        return HazardousGround(self.friction, tuple(bars), tuple(boxes), self.box_density)
+        if len(boxes) > MOST_BOXES:
+            raise InputError(
+                f"terrain.boxes={self.boxes}: {self.name} would have {len(boxes)} loose boxes "
+                f"{where} {MOST_BOXES} can be; choose a shorter duration or a larger spacing"
+            )
+        end = self.run_in + self.spacing * count
+        return HazardousGround(self.friction, tuple(bars), tuple(boxes), self.box_density, end)
+
+    def _kinds(self, generator: np.random.Generator) -> Iterator[bool]:
+        """Whether each thing is a bar; a stretch is drawn when the one before is used up."""
+        while self.bars + self.boxes > 0:
+            yield from generator.permutation([True] * self.bars + [False] * self.boxes)
 
 
 @dataclass(frozen=True)
@@ -103,11 +140,30 @@ class HazardousGround:
     bars: tuple[Cuboid, ...]
     boxes: tuple[Cuboid, ...]
     box_density: float
+    end: float
     slope: float = 0.0
+
+    @property
+    def extent(self) -> Extent:
+        """See `Ground`; the plane goes on, but nothing lies on it."""
+        return Extent(-BEHIND, self.end, 0.5 * WIDTH)
+
+    @cached_property
+    def _places(self) -> list[float]:
+        """Where along the way the bars lie [m], in their order."""
+        return [bar.centre[0] for bar in self.bars]
+
+    @cached_property
+    def _longest(self) -> float:
+        """How far from its centre a bar comes at most [m]."""
+        return max((0.5 * hypot(*bar.edges[:2]) for bar in self.bars), default=0.0)
 
     def height(self, x: float, y: float) -> float:
         """See `Ground`."""
-        return max((bar.edges[2] for bar in self.bars if bar.covers(x, y)), default=0.0)
+        first = bisect_left(self._places, x - self._longest)
+        last = bisect_right(self._places, x + self._longest)
+        near = self.bars[first:last]
+        return max((bar.edges[2] for bar in near if bar.covers(x, y)), default=0.0)
 
     def normal(self, x: float, y: float) -> Array:
         """See `Ground`; of a bar's top, also at its sides."""
@@ -140,6 +196,7 @@ class HazardousGround:
                 type=mujoco.mjtGeom.mjGEOM_BOX,
                 size=half,
                 density=self.box_density,
+                priority=GROUND_PRIORITY,
                 friction=[self.friction, 0.0, 0.0],
                 contype=GROUND_CONTACT,
                 conaffinity=CHARACTER_CONTACT | GROUND_CONTACT,

@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.mechanics.terrain.ground import add_geom
+from rotctl.mechanics.terrain.ground import EVERYWHERE, Extent, Friction, add_geom
 from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite, Positive
+from rotctl.settings import STRICT, Finite
 
 
 @validated(frozen=True, config=STRICT)
@@ -20,11 +20,12 @@ class Flat:
 
     name: str
     seeded: ClassVar[bool] = False
+    endless: ClassVar[bool] = True
     kind: Literal["flat"]
-    friction: Positive
+    friction: Friction
     description: str = ""
 
-    def make(self, generator: np.random.Generator) -> "Plane":
+    def make(self, generator: np.random.Generator, reach: float) -> "Plane":
         """The ground of one run."""
         return Plane(self.friction, 0.0)
 
@@ -35,22 +36,24 @@ class Slope:
 
     name: str
     seeded: ClassVar[bool] = False
+    endless: ClassVar[bool] = True
     kind: Literal["slope"]
-    friction: Positive
+    friction: Friction
     angle: Annotated[Finite, Field(ge=-30, le=30)]
     description: str = ""
 
-    def make(self, generator: np.random.Generator) -> "Plane":
+    def make(self, generator: np.random.Generator, reach: float) -> "Plane":
         """The ground of one run."""
         return Plane(self.friction, radians(self.angle))
 
 
 @dataclass(frozen=True)
 class Plane:
-    """A plane through the origin with slope [rad] along x."""
+    """A plane through the origin with slope [rad] along x; MuJoCo's planes have no end."""
 
     friction: float
     slope: float
+    extent: Extent = EVERYWHERE
 
     def height(self, x: float, y: float) -> float:
         """See `Ground`."""

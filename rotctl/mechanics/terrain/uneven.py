@@ -1,22 +1,34 @@
-"""Uneven ground: a smooth seeded heightfield, with scattered low bumps on it if asked for."""
+"""Uneven ground: a smooth seeded heightfield, with scattered low bumps on it if asked for.
+
+One field is drawn, whose two ends fit together, and laid one behind the other as often as the run
+needs: a seed has the same hills whatever the duration, and an hour of them takes no more memory
+than two fields. The first has the run-in.
+"""
 
 from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
 from typing import Annotated, ClassVar, Literal
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.linear import product
-from rotctl.mechanics.terrain.ground import FLOOR_DEPTH, add_geom
+from rotctl.mechanics.terrain.ground import (
+    BEHIND,
+    FLOOR_DEPTH,
+    WIDTH,
+    Extent,
+    Friction,
+    add_geom,
+)
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, NonNegative, Positive
 
-LENGTH, WIDTH = 60.0, 10.0  # [m] of the field, from 5 m behind the start
-BEHIND = 5.0  # [m]
-CELL = 0.1  # [m] spacing of the heights
+LENGTH = 66.0  # [m] of a field: with what is behind the start, 20 s at the fastest
+CELL = 0.15  # [m] between heights; finer ones would give the engine more contacts than it keeps
+COLUMNS, ROWS = round(LENGTH / CELL) + 1, round(WIDTH / CELL) + 1
 WAVES = 64  # random plane waves the field is the sum of
 
 
@@ -27,95 +39,132 @@ class Uneven:
     Attributes:
         height: from the lowest valley to the highest hill [m].
         wavelength: of the hills [m].
-        bumps: number of scattered bumps; bump_height: of the highest [m].
+        bumps: number of scattered bumps in a field; bump_height: of the highest [m].
         run_in: level ground ahead of the start before the hills are full [m].
     """
 
     name: str
     seeded: ClassVar[bool] = True
+    endless: ClassVar[bool] = False
     kind: Literal["uneven"]
-    friction: Positive
+    friction: Friction
     height: Annotated[NonNegative, Field(le=1)]
-    wavelength: Annotated[Positive, Field(ge=0.5)]
+    wavelength: Annotated[Positive, Field(ge=0.8, le=20)]  # some cells, and some to a field
     bumps: Annotated[int, Strict(), Field(ge=0, le=5000)]
     bump_height: Annotated[NonNegative, Field(le=0.3)]
-    run_in: NonNegative
+    run_in: Annotated[NonNegative, Field(le=50)]  # within the first field
     description: str = ""
 
-    def make(self, generator: np.random.Generator) -> "Heightfield":
-        """The ground of one run, drawn from `generator`."""
-        x = np.arange(-BEHIND, LENGTH - BEHIND + 0.5 * CELL, CELL)
-        y = np.arange(-0.5 * WIDTH, 0.5 * WIDTH + 0.5 * CELL, CELL)
+    def __post_init__(self) -> None:
+        if (self.bumps > 0) != (self.bump_height > 0):
+            raise ValueError("bumps and bump_height must both be 0, or neither")
+
+    def make(self, generator: np.random.Generator, reach: float) -> "Heightfield":
+        """The ground of one run that comes `reach` [m] ahead, drawn from `generator`."""
+        x = np.linspace(-BEHIND, LENGTH - BEHIND, COLUMNS)
+        y = np.linspace(-0.5 * WIDTH, 0.5 * WIDTH, ROWS)
         heights = _hills(x, y, self.wavelength, generator) * self.height
         for _ in range(self.bumps):
-            heights = np.maximum(heights, self._bump(x, y, generator))
+            self._raise_bump(heights, x, y, generator)
+        heights[:, -1] = heights[:, 0]  # but for rounding they are the same
         ramp = np.clip(x / max(self.run_in, CELL), 0.0, 1.0)
-        return Heightfield(self.friction, heights * ramp)
+        fields = max(1, ceil((reach + BEHIND) / LENGTH))
+        return Heightfield(self.friction, heights * ramp, heights, fields)
 
-    def _bump(self, x: Array, y: Array, generator: np.random.Generator) -> Array:
-        """One smooth bump (rows y, columns x) [m], 0.3 to 0.9 m in radius."""
+    def _raise_bump(
+        self, heights: Array, x: Array, y: Array, generator: np.random.Generator
+    ) -> None:
+        """Raise `heights` (rows y, columns x) [m] to a smooth bump, 0.3 to 0.9 m in radius."""
         centre = generator.uniform((x[0], y[0]), (x[-1], y[-1]))
         radius = generator.uniform(0.3, 0.9)
         top = self.bump_height * generator.uniform(0.3, 1.0)
-        distance = np.hypot(x[None, :] - centre[0], y[:, None] - centre[1]) / radius
-        return np.asarray(top * np.cos(0.5 * np.pi * np.minimum(distance, 1.0)) ** 2)
+        along = np.mod(x - centre[0] + 0.5 * LENGTH, LENGTH) - 0.5 * LENGTH
+        across = y - centre[1]
+        near = np.ix_(np.abs(across) < radius, np.abs(along) < radius)
+        distance = np.hypot(along[near[1]], across[near[0]]) / radius
+        bump = top * np.cos(0.5 * np.pi * np.minimum(distance, 1.0)) ** 2
+        heights[near] = np.maximum(heights[near], bump)
 
 
 @dataclass(frozen=True)
 class Heightfield:
-    """Heights (rows y, columns x) [m] on a grid of `CELL`, linear in between."""
+    """Fields of heights (ROWS of y, COLUMNS of x) [m], flat within each triangle of a cell.
+
+    Attributes:
+        first: the field with the start in it.
+        other: every other one.
+        fields: how many there are.
+    """
 
     friction: float
-    heights: NDArray[np.float64]
+    first: Array
+    other: Array
+    fields: int
     slope: float = 0.0
+
+    @cached_property
+    def extent(self) -> Extent:
+        """See `Ground`."""
+        return Extent(-BEHIND, self.fields * LENGTH - BEHIND, 0.5 * WIDTH)
 
     def height(self, x: float, y: float) -> float:
         """See `Ground`."""
-        rows, columns = self.heights.shape
-        u = min(max((x + BEHIND) / CELL, 0.0), columns - 1.000001)
-        v = min(max((y + 0.5 * WIDTH) / CELL, 0.0), rows - 1.000001)
-        i, j = int(v), int(u)
-        b, a = v - i, u - j
-        corner = self.heights[i : i + 2, j : j + 2]
-        return float(product(np.array([1 - b, b]), corner, np.array([1 - a, a])))
+        return self._plane(x, y)[0]
 
     def normal(self, x: float, y: float) -> Array:
-        """See `Ground`; from differences over one cell."""
-        h = 0.5 * CELL
-        slope_x = (self.height(x + h, y) - self.height(x - h, y)) / CELL
-        slope_y = (self.height(x, y + h) - self.height(x, y - h)) / CELL
-        normal = np.array([-slope_x, -slope_y, 1.0])
-        return np.asarray(normal / np.sqrt(product(normal, normal)))
+        """See `Ground`."""
+        _, along, across = self._plane(x, y)
+        normal = np.array([-along, -across, 1.0])
+        return np.asarray(normal / np.sqrt((normal**2).sum()))
+
+    def _plane(self, x: float, y: float) -> tuple[float, float, float]:
+        """Height [m] at a point, and the rises along x and y of the triangle it lies in."""
+        u = min(max((x + BEHIND) / CELL, 0.0), self.fields * (COLUMNS - 1) - 1e-6)
+        v = min(max((y + 0.5 * WIDTH) / CELL, 0.0), ROWS - 1 - 1e-6)
+        field, column = divmod(int(u), COLUMNS - 1)
+        row, a, b = int(v), u - int(u), v - int(v)
+        heights = self.other if field else self.first
+        (h00, h01), (h10, h11) = heights[row : row + 2, column : column + 2].tolist()
+        # MuJoCo cuts a cell from its corner at least x and y to the one opposite.
+        along, across = (h01 - h00, h11 - h01) if a > b else (h11 - h10, h10 - h00)
+        return h00 + a * along + b * across, along / CELL, across / CELL
 
     def add(self, spec: mujoco.MjSpec) -> None:
         """See `Ground`."""
-        low, high = float(self.heights.min()), float(self.heights.max())
-        span = max(high - low, 1e-6)
-        rows, columns = self.heights.shape
-        spec.add_hfield(
-            name="hills",
-            nrow=rows,
-            ncol=columns,
-            size=[0.5 * LENGTH, 0.5 * WIDTH, span, FLOOR_DEPTH],
-            userdata=((self.heights - low) / span).ravel(),
-        )
-        add_geom(
-            spec,
-            "ground",
-            self.friction,
-            type=mujoco.mjtGeom.mjGEOM_HFIELD,
-            hfieldname="hills",
-            pos=[0.5 * LENGTH - BEHIND, 0.0, low],
-        )
+        for i in range(self.fields):
+            heights = self.other if i else self.first
+            low, high = float(heights.min()), float(heights.max())
+            asset = "hills" if i else "first_hills"
+            if i < 2:
+                span = max(high - low, 1e-6)
+                spec.add_hfield(
+                    name=asset,
+                    nrow=ROWS,
+                    ncol=COLUMNS,
+                    size=[0.5 * LENGTH, 0.5 * WIDTH, span, FLOOR_DEPTH],
+                    userdata=((heights - low) / span).ravel(),
+                )
+            add_geom(
+                spec,
+                f"ground_{i}",
+                self.friction,
+                type=mujoco.mjtGeom.mjGEOM_HFIELD,
+                hfieldname=asset,
+                pos=[(i + 0.5) * LENGTH - BEHIND, 0.0, low],
+            )
 
 
 def _hills(x: Array, y: Array, wavelength: float, generator: np.random.Generator) -> Array:
-    """Sum of plane waves about that long, scaled to run from 0 to 1 (rows y, columns x)."""
+    """Sum of plane waves about that long, scaled to run from 0 to 1 (rows y, columns x).
+
+    Along x each has a whole number of waves in a field.
+    """
     number = 2.0 * np.pi / wavelength * generator.uniform(0.7, 1.3, WAVES)
     direction = generator.uniform(0.0, 2.0 * np.pi, WAVES)
     shift = generator.uniform(0.0, 2.0 * np.pi, WAVES)
+    whole = 2.0 * np.pi / LENGTH
     total = np.zeros((len(y), len(x)))
     for k, angle, phase in zip(number, direction, shift, strict=True):
-        along = k * (x[None, :] * np.cos(angle) + y[:, None] * np.sin(angle))
-        total += np.cos(along + phase)
+        along = whole * np.round(k * np.cos(angle) / whole)
+        total += np.cos(along * x[None, :] + k * np.sin(angle) * y[:, None] + phase)
     return np.asarray((total - total.min()) / np.ptp(total))
