@@ -138,12 +138,7 @@ def _simulated(scenario: Scenario, progress: Callable[[], object]) -> Made:
     begin = time.perf_counter()
     buffer, ending = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
-<<<<<<< HEAD
-    summary = summarise(scenario, buffer, breakdown, wall)
-=======
     summary = summarise(scenario, buffer, ending, wall)
-    found = collect()
->>>>>>> 618358b (The ground goes on for as long as a run needs, and a run that leaves it ends there)
     log = encode_run(
         buffer,
         model_xml=scenario.model.mjcf,

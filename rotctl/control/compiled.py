@@ -34,7 +34,8 @@ _double, _int, _pointer = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
 class _Constants(ctypes.Structure):
     _fields_ = [
         *((name, _double) for name in ("period", "friction", "diagonal", "tolerance", "slack")),
-        *((name, _double) for name in ("touch", "look_ahead", "mass")),
+        *((name, _double) for name in ("touch", "look_ahead", "merge_distance")),
+        *((name, _double) for name in ("merge_parallel", "mass")),
         ("gravity", _double * 3),
         ("sees_disturbance", _int),
         ("trunk_count", _int),
@@ -285,6 +286,8 @@ def _constants(model: Model, settings: ControllerSettings) -> _Constants:
         slack=LIMIT_SLACK,
         touch=model.touch,
         look_ahead=model.look_ahead,
+        merge_distance=settings.merging.distance,
+        merge_parallel=settings.merging.parallel,
         mass=model.mass,
         sees_disturbance=settings.sees_disturbance,
         trunk_count=len(model.trunk),

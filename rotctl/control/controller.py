@@ -69,7 +69,7 @@ class Controller:
         """The state in `data`, whose positions and contacts are up to date."""
         state = self._step.read(data) if self._step else None
         if state is None:
-            state = read(self.model, data, self.settings.sees_disturbance)
+            state = read(self.model, data, self.settings.sees_disturbance, self.settings.merging)
         return state
 
     def decide(self, state: State, command: Command, blend: float) -> Decision:

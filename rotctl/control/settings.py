@@ -6,6 +6,7 @@ from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control.supervisor import SupervisorName, Thresholds
+from rotctl.mechanics.merging import Merging
 from rotctl.settings import STRICT, NonNegative, NonNegativeVector, Positive
 
 FormName = Literal["condensed", "literal"]
@@ -73,6 +74,7 @@ class ControllerSettings:
         backend: `compiled` takes the C step where it serves (condensed boxqp) and is built;
             `reference` is the same mathematics in numpy.
         supervisor: inclusion test for contacts, see `rotctl.control.supervisor`.
+        merging: which contacts count as one.
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
         sees_disturbance: whether control knows of the forces from outside.
         tasks: gains by the name of a behaviour's task.
@@ -85,6 +87,7 @@ class ControllerSettings:
     backend: BackendName
     supervisor: SupervisorName
     thresholds: Thresholds
+    merging: Merging
     friction: Positive
     sees_disturbance: Annotated[bool, Strict()]
     contact: ContactGains

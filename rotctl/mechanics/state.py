@@ -7,6 +7,7 @@ import numpy as np
 
 from rotctl.linear import product
 from rotctl.mechanics.contacts import Contacts, read_contacts
+from rotctl.mechanics.merging import APART, Merging, merged
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum, read_momentum
 from rotctl.rotations import Array
@@ -24,7 +25,7 @@ class State:
             gravity forces less the joints' passive ones, and less those from outside where
             control knows of them.
         momentum: rotation indices and centre of mass.
-        contacts: contacts with the ground.
+        contacts: contacts with the ground, as control sees them.
         trunk_axes: (3, 3) columns are the trunk's mean front, left and up, each unit, world.
         data: the MuJoCo data behind all this. What is read from it, and the properties
             below, hold until the physics steps.
@@ -51,11 +52,14 @@ class State:
         return solved
 
 
-def read(model: Model, data: mujoco.MjData, sees_disturbance: bool = False) -> State:
+def read(
+    model: Model, data: mujoco.MjData, sees_disturbance: bool = False, merging: Merging = APART
+) -> State:
     """Read the state; positions and velocities must have been evaluated (`mj_step1`).
 
     Args:
         sees_disturbance: whether the bias knows of pushes and of a fluid.
+        merging: which contacts are one to control.
     """
     axes = (data.xmat[model.trunk] * model.trunk_weights).sum(axis=0).reshape(3, 3)
     return State(
@@ -64,7 +68,7 @@ def read(model: Model, data: mujoco.MjData, sees_disturbance: bool = False) -> S
         velocity=data.qvel.copy(),
         bias=_bias(model.mj, data, sees_disturbance),
         momentum=read_momentum(model.mj, data),
-        contacts=read_contacts(model.mj, data, model.touch, model.look_ahead),
+        contacts=merged(read_contacts(model.mj, data, model.touch, model.look_ahead), merging),
         trunk_axes=axes / np.sqrt((axes**2).sum(axis=0)),
         data=data,
     )

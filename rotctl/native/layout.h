@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-enum { CONTACTS = 64, TASKS = 16, MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
+enum { SEEN = 1024, CONTACTS = 64, TASKS = 16, MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
 enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
 
@@ -31,7 +31,8 @@ typedef struct {
 
 // Constants of a run.
 typedef struct {
-  double period, friction, diagonal, tolerance, slack, touch, look_ahead, mass, gravity[3];
+  double period, friction, diagonal, tolerance, slack, touch, look_ahead, merge_distance;
+  double merge_parallel, mass, gravity[3];
   int sees_disturbance, trunk_count;
   int trunk[16];
   double trunk_weight[16];

@@ -5,6 +5,44 @@
 // Whether a body is the character's: it is the first tree, loose things on the ground follow.
 static int own(const mjModel* m, int body) { return m->body_rootid[body] == 1; }
 
+// A contact of the character's `body`; sign turns its frame out of the ground.
+typedef struct {
+  const mjContact* at;
+  int body;
+  double sign;
+} Seen;
+
+// mechanics/merging.py: whether two contacts are one to control.
+static int are_one(const Constants* c, const Seen* a, const Seen* b) {
+  double square = 0, parallel = 0;
+  for (int i = 0; i < 3; i++) {
+    double d = a->at->pos[i] - b->at->pos[i];
+    square += d * d;
+    parallel += a->sign * a->at->frame[i] * (b->sign * b->at->frame[i]);
+  }
+  return a->body == b->body && square < c->merge_distance * c->merge_distance &&
+         parallel >= c->merge_parallel;
+}
+
+// mechanics/merging.py `merged`: keeps the deepest of those that are one. Returns how many.
+static int merge(const Constants* c, Seen* seen, int n) {
+  int order[SEEN], kept = 0;  // deepest first
+  unsigned char taken[SEEN] = {0};
+  for (int i = 0; i < n; i++) {
+    int k = i;
+    for (; k > 0 && seen[order[k - 1]].at->dist > seen[i].at->dist; k--) order[k] = order[k - 1];
+    order[k] = i;
+  }
+  for (int k = 0; k < n; k++) {
+    int other = 0;
+    while (other < n && !(taken[other] && are_one(c, seen + order[k], seen + other))) other++;
+    taken[order[k]] = other == n;
+  }
+  for (int i = 0; i < n; i++)
+    if (taken[i]) seen[kept++] = seen[i];
+  return kept;
+}
+
 // FAILED on too many contacts.
 int rotctl_read(Self* s, mjData* d, Reading* r) {
   const mjModel* m = s->m;
@@ -57,7 +95,8 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     for (int i = 0; i < nv; i++) s->bias[i] -= pushed[i];
   }
   memcpy(r->bias, s->bias, sizeof(double) * nv);
-  r->count = 0;
+  Seen seen[SEEN];
+  int n = 0;
   for (int i = 0; i < d->ncon; i++) {
     const mjContact* k = d->contact + i;
     int first = m->geom_bodyid[k->geom[0]], second = m->geom_bodyid[k->geom[1]];
@@ -65,13 +104,17 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
     if (k->dist > s->c.touch &&
         !(s->c.look_ahead && k->dist + s->c.look_ahead * d->efc_vel[k->efc_address] < 0))
       continue;
-    if (r->count == CONTACTS) return FAILED;
-    int j = r->count++;
-    double sign = own(m, first) ? -1 : 1;
-    r->body[j] = own(m, first) ? first : second;
+    if (n == SEEN) return FAILED;
+    seen[n++] = own(m, first) ? (Seen){k, first, -1} : (Seen){k, second, 1};
+  }
+  r->count = merge(&s->c, seen, n);
+  if (r->count > CONTACTS) return FAILED;
+  for (int j = 0; j < r->count; j++) {
+    const mjContact* k = seen[j].at;
+    r->body[j] = seen[j].body;
     r->row[j] = k->efc_address;
     memcpy(r->position[j], k->pos, sizeof r->position[j]);
-    for (int a = 0; a < 9; a++) r->frame[j][a] = sign * k->frame[a];
+    for (int a = 0; a < 9; a++) r->frame[j][a] = seen[j].sign * k->frame[a];
     r->friction[j][0] = k->friction[0], r->friction[j][1] = k->friction[1];
     r->gap[j] = k->dist;
   }
