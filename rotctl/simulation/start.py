@@ -58,6 +58,10 @@ class StartSettings:
     tilt: NonNegative = 0.0
     description: str = ""
 
+    def __post_init__(self) -> None:
+        if self.scatter and not self.postures:
+            raise ValueError("scatter is about postures, and there are none")
+
 
 @dataclass(frozen=True)
 class Start:

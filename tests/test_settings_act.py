@@ -1,0 +1,215 @@
+"""Every number and every choice of a config acts: something else in the log, or a refusal.
+
+A setting that makes a new run id and nothing else makes two results out of one. Each is changed by
+itself, in a run in which it should count, and the log must differ by more than rounding. What does
+nothing there is listed with the reason, and must do nothing: a list that is out of date fails.
+"""
+
+import copy
+import re
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from rotctl.config import check, load, to_dict
+from rotctl.errors import InputError
+from rotctl.run import in_memory
+from rotctl.scenario import build
+
+TINY = 1e-9  # of any number in the log; in so short a run rounding makes 1e-13
+TEXT = re.compile(r"(.*\.)?(name|description|source|clip)|character\.(trunk|self_collision)\..*")
+
+
+@dataclass(frozen=True)
+class Case:
+    """A run, and the settings that should act in it.
+
+    Attributes:
+        keys: pattern of the settings that are tried.
+        inert: patterns of those that do nothing here, and why.
+        seconds: simulated.
+    """
+
+    overrides: tuple[str, ...]
+    keys: str
+    inert: dict[str, str] = field(default_factory=dict)
+    seconds: float = 0.4
+
+
+CASES = {
+    "default": Case(
+        (),
+        r"(?!character\.bodies|criteria).*",
+        {
+            r"controller\.gains\.linear_stiffness\.[02]": "the target is where it is: to be mended",
+            r"controller\.merging\.angle": "of hills, where contacts are near each other",
+            r"controller\.backend": "the same mathematics, slower",
+            r"controller\.thresholds\.separation": "of the supervisor `modified`",
+            r"behaviour\.align_with_slope": "of slopes",
+            r"physics\.ccd_(iterations|tolerance)": "of boxes and heightfields",
+            r"physics\.noslip_tolerance": "of noslip_iterations, which is 0",
+        },
+    ),
+    "modified": Case(
+        ("controller.supervisor=modified",), r"controller\.thresholds\.separation", seconds=0.8
+    ),
+    "noslip": Case(("physics.noslip_iterations=3",), r"physics\.noslip_.*"),
+    "clip": Case(("behaviour=forward_roll_2",), r"behaviour\.(?!align_with_slope).*"),
+    "slope": Case(("behaviour=decline",), r"terrain\..*|behaviour\.align_with_slope"),
+    "posture": Case(
+        ("start=still",),
+        r"start\..*",
+        {r"start\.postures\.(right|head)\..*": "of backward and log rolls"},
+    ),
+    "lockstep": Case(
+        ("physics=lockstep",),
+        r"physics\..*",
+        {
+            r"physics\.backend": "the same mathematics, slower",
+            r"physics\.ccd_(iterations|tolerance)": "of boxes and heightfields",
+            r"physics\.limit_push_out": "of limits that are met too late",
+        },
+        seconds=1.2,
+    ),
+    "lockstep limits": Case(
+        ("physics=lockstep", "physics.limit_margin=0.001"), r"physics\.limit_push_out"
+    ),
+    "lockstep on hills": Case(("physics=lockstep", "terrain=uneven"), r"physics\.ccd_.*"),
+    "uneven": Case(
+        ("terrain=uneven", "terrain.bumps=2000", "terrain.bump_height=0.1", "terrain.run_in=0.2"),
+        r"terrain\..*|controller\.merging\..*|physics\.ccd_.*",
+        seconds=0.8,
+    ),
+    "stairs": Case(("terrain=stairs_down", "terrain.run_in=0.3"), r"terrain\..*", seconds=1.2),
+    "hazards": Case(
+        ("terrain=hazards", "terrain.run_in=0", "terrain.spacing=0.4", "seed=3"),
+        r"terrain\..*",
+        seconds=0.8,
+    ),
+}
+
+
+def leaves(data, path=""):
+    """Dotted paths and values of all that is no list and no dictionary in plain data."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+        here = f"{path}.{key}" if path else str(key)
+        if isinstance(value, dict | list | tuple):
+            yield from leaves(value, here)
+        else:
+            yield here, value
+
+
+def inside(data, parts):
+    """What is at a path."""
+    for part in parts:
+        data = data[int(part) if isinstance(data, list) else part]
+    return data
+
+
+def changed(data, path, value):
+    """A copy with another value at a path."""
+    made, (*parts, last) = copy.deepcopy(data), path.split(".")
+    inner = inside(made, parts)
+    inner[int(last) if isinstance(inner, list) else last] = value
+    return made
+
+
+def plain(data):
+    """With lists for tuples."""
+    if isinstance(data, dict):
+        return {key: plain(value) for key, value in data.items()}
+    return [plain(value) for value in data] if isinstance(data, list | tuple) else data
+
+
+def others(data, path, value):
+    """Other values that a setting might have, the milder first."""
+    if isinstance(value, bool):
+        return [not value]
+    if isinstance(value, int):
+        return [value + 1, 2 * value + 3, 1, 0]
+    if isinstance(value, float):
+        near = [1.2 * value + 0.01, 0.5 * value, value - 0.5]
+        far = [0.01 * value, -value, 100.0 * value + 1.0]
+        around = inside(data, path.split(".")[:-1])
+        if isinstance(around, list) and len(around) == 2:  # a range: nearly shut
+            far += [around[0] + 0.01, around[1] - 0.01]
+        return [other for other in near + far if other != value]
+    if isinstance(value, str):  # a choice: the complaint on a wrong one names them all
+        with pytest.raises(InputError) as error:
+            build(check(changed(data, path, "no such")))
+        return sorted(set(re.findall(r"'(\w+)'", str(error.value))) - {value, "no such"})
+    return []
+
+
+def logged(data):
+    """The log of a config, None if it is refused."""
+    try:
+        buffer, _ = in_memory(build(check(data)))
+    except InputError:
+        return None
+    return buffer.arrays()
+
+
+def same(one, other):
+    """Whether two logs are, but for rounding."""
+    for name, array in one.items():
+        if array.shape != other[name].shape:
+            return False
+        if array.dtype.kind in "SUb":
+            if not (array == other[name]).all():
+                return False
+        elif not np.allclose(array, other[name], rtol=0.0, atol=TINY, equal_nan=True):
+            return False
+    return True
+
+
+def inert(data, settings):
+    """Of these settings those with which nothing changes, whatever their value."""
+    usual, found = logged(data), []
+    for path, value in settings:
+        logs = (logged(changed(data, path, other)) for other in others(data, path, value))
+        accepted = False
+        for log in logs:
+            if log is None:
+                continue
+            accepted = True
+            if not same(usual, log):
+                break
+        else:
+            found += [path] if accepted else []
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_setting_acts(name):
+    case = CASES[name]
+    data = plain(to_dict(load([*case.overrides, f"duration={case.seconds}"])))
+    settings = [
+        (path, value)
+        for path, value in leaves(data)
+        if re.fullmatch(case.keys, path) and not TEXT.fullmatch(path) and value is not None
+    ]
+    assert settings
+    found = inert(data, settings)
+    assert [path for path in found if not any(re.fullmatch(p, path) for p in case.inert)] == []
+    assert [p for p in case.inert if not any(re.fullmatch(p, path) for path in found)] == []
+
+
+def numbers_of_the_body(data):
+    """All numbers of bodies, joints and solid geoms, and their paths."""
+    for i, body in enumerate(data["character"]["bodies"]):
+        solid = {j for j, geom in enumerate(body["geoms"]) if geom["mass"] > 0}
+        for path, value in leaves(body, f"character.bodies.{i}"):
+            geom = re.search(r"geoms\.(\d+)", path)
+            seen_only = "colour" in path or (geom and int(geom[1]) not in solid)
+            if isinstance(value, int | float) and not isinstance(value, bool) and not seen_only:
+                yield path, value
+
+
+@pytest.mark.parametrize("every", [9, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_number_of_the_body_acts(every):
+    data = plain(to_dict(load(["duration=0.4"])))
+    numbers = list(numbers_of_the_body(data))[::every]
+    assert len(numbers) > 20
+    assert inert(data, numbers) == []
