@@ -25,7 +25,7 @@ DEEPEST = 12  # lists and dicts within each other
 MOST_DIGITS = 40  # of a whole number
 
 # All but what YAML calls printable. JSON's escapes can spell half a surrogate pair too.
-_UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 # C's parser is five times faster; it may be missing, and both read the same.
 _C = hasattr(yaml, "CSafeLoader")
 _Safe: Any = yaml.CSafeLoader if _C else yaml.SafeLoader
@@ -45,7 +45,7 @@ class _Loader(_Safe):  # type: ignore[misc]
     def construct_scalar(self, node: Any) -> str:
         """A text, or what a number is made of."""
         value: str = super().construct_scalar(node)
-        if _UNPRINTABLE.search(value):
+        if UNPRINTABLE.search(value):
             raise _at(node, "a text has a control character")
         return value
 
@@ -91,6 +91,8 @@ def read_yaml(path: Path, limit: int = LARGEST, *, linked: bool) -> Any:
 
 def from_yaml(where: str, text: str) -> Any:
     """The data of a YAML text; `where` it is from is for the messages."""
+    if len(text) > LARGEST:
+        raise InputError(f"{where}: larger than {LARGEST / 1e6:g} MB")
     try:
         _check(text)
         return yaml.load(text, _Loader)  # safe: plain data only
@@ -118,7 +120,7 @@ def from_json(text: str) -> Any:
     except RecursionError:
         raise ValueError("nested too deeply") from None
     for value, depth in _walk(data):
-        if isinstance(value, str) and _UNPRINTABLE.search(value):
+        if isinstance(value, str) and UNPRINTABLE.search(value):
             raise ValueError("a text has a control character")
         if depth == DEEPEST and isinstance(value, dict | list):
             raise ValueError(f"nested more than {DEEPEST} deep")

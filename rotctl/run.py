@@ -17,6 +17,7 @@ from rotctl import files
 from rotctl.config import Config, to_yaml
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
+from rotctl.log.outcome import require_verdict
 from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario, build
 from rotctl.simulation.episode import Moment
@@ -226,12 +227,17 @@ def stored(folder: Path, run_id: str) -> RunLog:
     Raises:
         LogError: the log there is not whole, or of another run.
     """
-    log = RunLog.open(folder / LOG_NAME)
+    log = RunLog.open(folder / LOG_NAME, linked=False)
     log.verify()
     if log.attributes["run_id"] != run_id:
         raise LogError(f"{log.path}: is run {log.attributes['run_id']}, expected {run_id}")
+    outcome = log.outcome
+    try:
+        require_verdict(outcome)
+    except LogError as error:
+        raise LogError(f"{log.path}: {error}") from None
     if not all((folder / name).exists() for name in (SUMMARY_NAME, CONFIG_NAME)):
-        _write_beside(folder, log.outcome, str(log.attributes["config"]))
+        _write_beside(folder, outcome, str(log.attributes["config"]))
     return log
 
 

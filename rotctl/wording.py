@@ -25,10 +25,14 @@ def readable(summary: dict[str, Any]) -> str:
     """A summary row for people."""
 
     def number(key: str, form: str = ".2f") -> str:
-        value = summary[key]
-        return "-" if value is None else format(value, form)
+        value = summary.get(key)
+        return format(value, form) if isinstance(value, int | float) else "-"
 
-    verdict = "success" if summary["success"] else f"FAILED: {summary['failure_reason']}"
+    name, seed, run, reason = (
+        one_line(str(summary.get(key, "-")))
+        for key in ("behaviour", "seed", "run_id", "failure_reason")
+    )
+    verdict = "success" if summary["success"] else f"FAILED: {reason}"
     if summary.get("criteria", "rolling") == "rolling":
         measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
@@ -40,14 +44,14 @@ def readable(summary: dict[str, Any]) -> str:
             f"  stall        {number('longest_stall')} s at most",
         ]
     else:
-        known = [column for name, column in COLUMNS.items() if name in summary]
-        wide = max(len(column.title) for column in known)
+        known = [column for key, column in COLUMNS.items() if key in summary]
+        wide = max((len(column.title) for column in known), default=0)
         measured = [
             f"  {c.title:{wide}}  {number(c.name, '.3g')} {c.unit}".rstrip() for c in known
         ]
     return "\n".join(
         [
-            f"{summary['behaviour']}  seed {summary['seed']}  run {summary['run_id']}  {verdict}",
+            f"{name}  seed {seed}  run {run}  {verdict}",
             *measured,
             f"  torque       {number('torque_p99_fraction')} of the limit (99th percentile), "
             f"{summary['solver_failures']} solver failures",

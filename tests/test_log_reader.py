@@ -70,7 +70,7 @@ def test_an_outcome_that_is_no_json_object_is_refused(tmp_path, outcome):
 
 def test_a_missing_file(tmp_path):
     assert refused(tmp_path / "run.h5") == "no such file"
-    assert refused(tmp_path) == "no such file"
+    assert refused(tmp_path) == "is a folder"
 
 
 def test_a_file_that_is_not_hdf5(tmp_path):

@@ -1,12 +1,14 @@
 """Every way in which a log from a stranger can be hostile, and the one line that refuses it."""
 
+import os
+
 import h5py
 import numpy as np
 import pytest
 from test_log_writer import encoded, write
 
 from rotctl.errors import LogError
-from rotctl.log import RunLog
+from rotctl.log import SCHEMA, RunLog
 
 QPOS = "trajectory/qpos"
 
@@ -206,6 +208,50 @@ def test_a_hostile_log_is_refused(path, change, message):
     with pytest.raises(LogError) as caught:
         RunLog.open(path)
     assert str(caught.value) == f"{path}: {message}"
+
+
+def test_a_file_that_swells_is_refused(path):
+    """Chunks that were never written take no room in the file, and 200 MB in memory."""
+    steps, capacity = RunLog.open(path).sizes["steps"], 100_000
+    with h5py.File(path, "r+") as file:
+        for name in (n for n, spec in SCHEMA.items() if "capacity" in spec.shape):
+            dtype, beyond = file[name].dtype, file[name].shape[2:]
+            replace(
+                file,
+                name,
+                lambda f, _, name=name, dtype=dtype, beyond=beyond: f.create_dataset(
+                    name, (steps, capacity, *beyond), dtype, chunks=(1, 1000, *beyond)
+                ),
+            )
+    with pytest.raises(LogError) as caught:
+        RunLog.open(path)
+    size = path.stat().st_size
+    assert size < 1_000_000
+    assert str(caught.value).startswith(f"{path}: declares ")
+    assert str(caught.value).endswith(f" bytes of data, but has {size} bytes")
+
+
+def test_text_that_is_none_is_refused(path):
+    """h5py hands bytes that are no UTF-8 on as halves of surrogate pairs: no page can hold them."""
+    content = path.read_bytes()
+    assert content.count(b"0123456789ab") == 1
+    path.write_bytes(content.replace(b"0123456789ab", b"0123456789a\xff"))
+    with pytest.raises(LogError) as caught:
+        RunLog.open(path)
+    assert str(caught.value) == f"{path}: attribute 'run_id' has a control character"
+
+
+def test_a_pipe_or_a_link_in_the_place_of_a_log(path, tmp_path):
+    (tmp_path / "link.h5").symlink_to(path)
+    assert RunLog.open(tmp_path / "link.h5").steps
+    os.mkfifo(tmp_path / "pipe.h5")
+    for name, linked, said in (
+        ("link.h5", False, "is a link; only plain files are read here"),
+        ("pipe.h5", True, "is no plain file"),
+    ):
+        with pytest.raises(LogError) as caught:
+            RunLog.open(tmp_path / name, linked=linked)
+        assert str(caught.value) == f"{tmp_path / name}: {said}"
 
 
 def test_a_linked_group_under_its_right_name_is_refused(path):

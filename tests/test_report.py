@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import shutil
 from html.parser import HTMLParser
 from xml.etree import ElementTree as Xml
@@ -332,13 +333,24 @@ def test_a_tested_claim_that_has_gone_is_worse():
     ("text", "message"),
     [
         (None, "--against {old}: no report, there is no {old}/claims.csv"),
-        ("id,verdict\nx,reproduced\n", "{old}/claims.csv: line 2 is no claim with its verdict"),
+        *(
+            (text, "{old}/claims.csv: is no claims.csv of a report, its columns must include "
+             "sweep, experiment, id, verdict")
+            for text in ("id,verdict\nx,reproduced\n", "any text\n", "\n", "\x1b\0", "a,b\n" * 99,
+                         '"' + "x" * 200_000, '"torn')
+        ),
+        ("sweep,experiment,id,verdict\ns,e,x\n",
+         "{old}/claims.csv: row 1 is no claim with its verdict"),
+        ("sweep,experiment,id,verdict\ns,e,x,partly\n\n",
+         "{old}/claims.csv: row 2 is no claim with its verdict"),
+        ("sweep,experiment,id,verdict\ns,e,x,partly\ns,e,x,reproduced\n",
+         "{old}/claims.csv: row 2 judges s/e/x again"),
         (
             "sweep,experiment,id,verdict\ns,e,x,good\n",
-            "{old}/claims.csv: line 2 is no claim with its verdict",
+            "{old}/claims.csv: row 1 is no claim with its verdict",
         ),
     ],
-)
+)  # fmt: skip
 def test_what_is_no_report_is_one_line(made, tmp_path, capsys, text, message):
     old = tmp_path / "old"
     old.mkdir()
@@ -348,6 +360,27 @@ def test_what_is_no_report_is_one_line(made, tmp_path, capsys, text, message):
     assert main(command) == 2
     assert capsys.readouterr() == ("", f"rotctl: {message.format(old=old)}\n")
     assert not (tmp_path / "site").exists()
+
+
+def test_any_file_is_no_earlier_report(made, tmp_path, capsys):
+    """In CI a path that is wrong, but there, would pass for ever."""
+    command = ["report", str(made), "--out", str(tmp_path / "site"), "--against"]
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "empty").touch()
+    (tmp_path / "binary").write_bytes(b"\xff")
+    columns = (
+        "is no claims.csv of a report, its columns must include sweep, experiment, id, verdict"
+    )
+    for name, said in (
+        ("pipe", "is no plain file"),
+        ("empty", columns),
+        ("binary", "is no text (UTF-8)"),
+    ):
+        assert main([*command, str(tmp_path / name)]) == 2
+        where = f"{tmp_path / name}" + (":1" if name == "binary" else "")
+        assert capsys.readouterr() == ("", f"rotctl: {where}: {said}\n")
+    assert main([*command, str(made / "table" / "sweep.jsonl")]) == 2
+    assert capsys.readouterr().err.endswith(f"sweep.jsonl: {columns}\n")
 
 
 def test_a_folder_that_cannot_be_written_is_one_line(sweep, tmp_path, capsys):

@@ -246,9 +246,10 @@ def test_the_summary_of_a_run_in_memory_is_the_one_in_its_log(tmp_path):
 @pytest.mark.parametrize(
     ("outcome", "reason"),
     [
-        ({"success": "yes"}, "outcome does not say whether it is a success"),
+        ({"success": "yes"}, "outcome does not say success"),
         ({"revolutions": [1.0]}, "outcome has no plain value for 'revolutions'"),
-        ({"revolutions": 1e400}, "outcome has no plain value for 'revolutions'"),
+        ({"revolutions": 1e300}, "outcome has no plain value for 'revolutions'"),
+        ({"revolutions": 1e400}, "outcome is not JSON"),
         ({"revolutions": 2**70}, ""),
     ],
 )

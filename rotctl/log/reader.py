@@ -1,6 +1,5 @@
 """A log file -> its arrays, checked before anything is read."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,17 +12,21 @@ from numpy.typing import NDArray
 from rotctl.errors import LogError
 from rotctl.log import untrusted
 from rotctl.log.digest import content_sha256
+from rotctl.log.outcome import outcome_of
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
 
 
-def read_attributes(path: str | Path) -> dict[str, bool | int | float | str]:
+def read_attributes(path: str | Path, *, linked: bool) -> dict[str, bool | int | float | str]:
     """The root attributes alone, checked; a tenth of the work of `RunLog.open`.
+
+    Args:
+        linked: whether the path may be a symbolic link, see `rotctl.files.opened`.
 
     Raises:
         LogError: ``<path>: <reason>``; missing, truncated, foreign, of another version or
             incomplete.
     """
-    with untrusted.opened(Path(path)) as file:
+    with untrusted.opened(Path(path), linked=linked) as file:
         return untrusted.root_attributes(file)
 
 
@@ -42,19 +45,23 @@ class RunLog:
     sizes: Mapping[str, int]
 
     @classmethod
-    def open(cls, path: str | Path) -> "RunLog":
+    def open(cls, path: str | Path, *, linked: bool = True) -> "RunLog":
         """Opens a log and checks all of it except the data themselves (see ``verify``).
+
+        Args:
+            linked: whether the path may be a symbolic link: no for what is found in a folder.
 
         Raises:
             LogError: ``<path>: <reason>``; missing, truncated, foreign, of another version,
                 incomplete, unsafe or misshapen.
         """
         path = Path(path)
-        with untrusted.opened(path) as file:
+        with untrusted.opened(path, linked=linked) as file:
             attributes = untrusted.root_attributes(file)
             datasets = untrusted.datasets(file)
             layout = {name: (d.dtype, d.shape) for name, d in datasets.items()}
             sizes = check_layout(layout, int(attributes["schema_version"]))
+            untrusted.require_no_bomb(path.stat().st_size, datasets.values())
             for name, dataset in datasets.items():
                 _check_unit(name, dataset)
         return cls(path, attributes, sizes)
@@ -66,7 +73,7 @@ class RunLog:
             LogError: there is no such dataset, or it is damaged.
         """
         self._require_name(name)
-        with untrusted.opened(self.path) as file:
+        with untrusted.opened(self.path, linked=True) as file:
             return self._read(file, name)
 
     def __contains__(self, name: object) -> bool:
@@ -93,15 +100,12 @@ class RunLog:
         """The run's summary row.
 
         Raises:
-            LogError: it is not a JSON object.
+            LogError: it is not a JSON object of plain values.
         """
         try:
-            outcome = json.loads(str(self.attributes["outcome"]))
-        except (ValueError, RecursionError) as error:
-            raise LogError(f"{self.path}: outcome is not JSON") from error
-        if not isinstance(outcome, dict):
-            raise LogError(f"{self.path}: outcome is not a JSON object")
-        return outcome
+            return outcome_of(str(self.attributes["outcome"]))
+        except LogError as error:
+            raise LogError(f"{self.path}: {error}") from None
 
     @property
     def model_xml(self) -> str:
@@ -138,16 +142,20 @@ class RunLog:
         Raises:
             LogError: the file is damaged.
         """
-        with untrusted.opened(self.path) as file:
-            arrays = {name: self._read(file, name) for name in self.names}
-        found = content_sha256(arrays, self.attributes)
+        with untrusted.opened(self.path, linked=True) as file:
+            # Block by block: a log may be larger than the memory.
+            datasets = {name: self._checked(file, name) for name in self.names}
+            found = content_sha256(datasets, self.attributes)
         if found != self.attributes["content_sha256"]:
             raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
 
     def _read(self, file: h5py.File, name: str) -> NDArray[Any]:
+        return np.asarray(self._checked(file, name)[()])
+
+    def _checked(self, file: h5py.File, name: str) -> h5py.Dataset:
         dataset = untrusted.dataset(file, *name.split("/"))
         check_dataset(name, dataset.dtype, dataset.shape, self.sizes)
-        return np.asarray(dataset[()])
+        return dataset
 
     def _require_name(self, name: str) -> None:
         if name not in self.names:

@@ -4,8 +4,7 @@ Only hard links are walked, only data inside the file is read, and only through 
 itself brings. Sizes are judged from declared shapes, before anything is allocated.
 """
 
-import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from math import prod
 from pathlib import Path
@@ -14,26 +13,36 @@ from typing import Any
 import h5py
 import numpy as np
 
-from rotctl.errors import LogError
-from rotctl.log.schema import ATTRIBUTES, GROUPS, MAX_TOTAL_BYTES, OLDEST_READ, SCHEMA_VERSION
+from rotctl import files
+from rotctl.documents import UNPRINTABLE
+from rotctl.errors import InputError, LogError
+from rotctl.log.schema import ATTRIBUTES, GROUPS, OLDEST_READ, SCHEMA_VERSION
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
+
+SMALL_BYTES = 2**26  # of data that any file may declare
+# Times a file's size, beyond that: empty slots of contacts pack well, 45 at the most.
+MOST_PACKED = 64
+MAX_CHUNK_BYTES = 2**26
 
 # What h5py raises, in our experience of damaged files.
 _DAMAGE = (OSError, RuntimeError, KeyError, ValueError, TypeError, OverflowError, MemoryError)
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[h5py.File]:
+def opened(path: Path, *, linked: bool) -> Iterator[h5py.File]:
     """Opens a file for reading; whatever goes wrong inside becomes one line with its path.
+
+    Args:
+        linked: see `rotctl.files.opened`.
 
     Raises:
         LogError: ``<path>: <reason>``.
     """
-    if not os.path.isfile(path):  # unlike Path.is_file, never raises: too long a name is no file
-        raise LogError(f"{path}: no such file")
-    if not os.access(path, os.R_OK):
-        raise LogError(f"{path}: permission denied")
+    try:
+        files.opened(path, linked=linked).close()
+    except InputError as error:
+        raise LogError(str(error)) from None
     if not h5py.is_hdf5(path):
         raise LogError(f"{path}: not an HDF5 file")
     try:
@@ -89,6 +98,8 @@ def attribute(owner: h5py.Group | h5py.Dataset, name: str) -> bool | int | float
         raise LogError(f"attribute {name!r} is not a plain value")
     value = owner.attrs[name]
     plain: bool | int | float | str = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, str) and UNPRINTABLE.search(plain):  # or no UTF-8: h5py lets it through
+        raise LogError(f"attribute {name!r} has a control character")
     return plain
 
 
@@ -106,6 +117,20 @@ def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
         for name in group:
             found[f"{group_name}/{name}"] = dataset(file, group_name, name)
     return found
+
+
+def require_no_bomb(size: int, datasets: Iterable[h5py.Dataset]) -> None:
+    """Refuses data that would take far more memory than the file takes on the disk.
+
+    Args:
+        size: of the file [bytes].
+
+    Raises:
+        LogError: it would; no run that rotctl has logged comes near.
+    """
+    total = sum(d.dtype.itemsize * prod(d.shape or ()) for d in datasets)
+    if total > SMALL_BYTES + MOST_PACKED * size:
+        raise LogError(f"declares {total} bytes of data, but has {size} bytes")
 
 
 def _child(group: h5py.Group, name: str) -> Any:
@@ -138,6 +163,6 @@ def dataset(file: h5py.File, group_name: str, name: str) -> h5py.Dataset:
     filters = {creation.get_filter(i)[0] for i in range(creation.get_nfilters())}
     if not filters <= _FILTERS:
         raise LogError(f"{path!r} needs a foreign filter")
-    if found.chunks and prod(found.chunks) * found.dtype.itemsize > MAX_TOTAL_BYTES:
+    if found.chunks and prod(found.chunks) * found.dtype.itemsize > MAX_CHUNK_BYTES:
         raise LogError(f"{path!r} has absurdly large chunks")
     return found

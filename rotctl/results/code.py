@@ -1,9 +1,9 @@
 """Which code made a run, as one text: what differs in it may differ in the numbers."""
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
+from rotctl.documents import from_json
 from rotctl.errors import LogError
 
 
@@ -18,9 +18,9 @@ def code_version(attributes: Mapping[str, Any]) -> str:
     """
     versions = attributes["versions"]
     try:
-        versions = json.loads(versions) if isinstance(versions, str) else versions
-        own, physics = versions["rotctl"], versions["mujoco"]
-    except (ValueError, TypeError, KeyError, RecursionError):
+        versions = from_json(versions) if isinstance(versions, str) else versions
+        own, physics = (f"{versions[name]:.20}" for name in ("rotctl", "mujoco"))
+    except (ValueError, TypeError, KeyError):
         raise LogError("versions are not those of a rotctl log") from None
     commit = str(attributes["git_commit"])[:7]
     changed = " with changes" if attributes["git_dirty"] else ""

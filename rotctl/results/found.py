@@ -3,7 +3,6 @@
 Only the root attributes of a log are read, not its trajectory: a millisecond or two a run.
 """
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -12,11 +11,11 @@ from typing import Any
 
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, read_attributes
+from rotctl.log.outcome import outcome_of, require_verdict
 from rotctl.results.code import code_version
 from rotctl.results.manifest import MANIFEST_NAME, Entry, read
 
 ORIGIN = ("machine", "versions", "git_commit", "git_dirty", "wall_time")
-LARGE = 1e300  # no number in a summary is, and none is infinite
 DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
 
 
@@ -77,11 +76,13 @@ def found(folder: Path) -> tuple[list[Found], list[str]]:
 
 def _logged(path: Path, log: str) -> Found:
     try:
-        attributes = read_attributes(path)
+        attributes = read_attributes(path, linked=False)
+        outcome = outcome_of(str(attributes["outcome"]))
+        require_verdict(outcome)
         return Found(
             str(attributes["run_id"]),
             DONE,
-            outcome=_summary(str(attributes["outcome"])),
+            outcome=outcome,
             code=code_version(attributes),
             log=log,
             config=str(attributes["config"]),
@@ -89,25 +90,6 @@ def _logged(path: Path, log: str) -> Found:
         )
     except LogError as error:
         return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
-
-
-def _summary(text: str) -> dict[str, Any]:
-    """The outcome of a log.
-
-    Raises:
-        LogError: it is not what rotctl writes.
-    """
-    try:
-        outcome = json.loads(text)
-    except (ValueError, RecursionError):
-        raise LogError("outcome is not JSON") from None
-    if not isinstance(outcome, dict) or not isinstance(outcome.get("success"), bool):
-        raise LogError("outcome does not say whether it is a success")
-    for name, value in outcome.items():
-        number = isinstance(value, int | float) and abs(value) < LARGE
-        if not (number or value is None or isinstance(value, str)):
-            raise LogError(f"outcome has no plain value for {name!r:.60}")
-    return outcome
 
 
 def _unlogged(entry: Entry) -> Found:

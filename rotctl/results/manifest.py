@@ -5,15 +5,20 @@ never started, is a row in a summary and not a gap.
 """
 
 import json
+import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from rotctl import files
+from rotctl.documents import read_json_lines
 from rotctl.errors import InputError
 
 MANIFEST_NAME = "sweep.jsonl"
+
+
+_FIELDS = {"run_id", "values", "failure"}
 
 
 @dataclass(frozen=True)
@@ -37,14 +42,14 @@ def read(folder: Path) -> dict[str, Entry]:
         InputError: the file cannot be read, or is of somebody else.
     """
     path = folder / MANIFEST_NAME
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except FileNotFoundError:
+    if not os.path.lexists(path):
         return {}
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot read {path}: {error}") from None
-    found = [_entry(path, number, line) for number, line in enumerate(lines, 1)]
-    return {entry.run_id: entry for entry in found}
+    entries = {}
+    for number, data in read_json_lines(path, linked=False):
+        if not _sound(data):
+            raise InputError(f"{path}: line {number} is not a row of a sweep")
+        entries[data["run_id"]] = Entry(**data)
+    return entries
 
 
 def write(folder: Path, entries: Iterable[Entry]) -> None:
@@ -57,12 +62,9 @@ def write(folder: Path, entries: Iterable[Entry]) -> None:
     files.replace(folder / MANIFEST_NAME, lines.encode(), durable=True)
 
 
-def _entry(path: Path, number: int, line: str) -> Entry:
-    try:
-        entry = Entry(**json.loads(line))
-        sound = isinstance(entry.values, dict) and isinstance(entry.run_id, str)
-    except (ValueError, TypeError, RecursionError):
-        sound = False
-    if not sound:
-        raise InputError(f"{path}: line {number} is not a row of a sweep")
-    return entry
+def _sound(data: Any) -> bool:
+    """Whether the data of a line are those of an `Entry`."""
+    if not isinstance(data, dict) or not {"run_id", "values"} <= set(data) <= _FIELDS:
+        return False
+    texts = (data["run_id"], data.get("failure", ""))
+    return isinstance(data["values"], dict) and all(isinstance(text, str) for text in texts)

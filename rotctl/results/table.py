@@ -9,14 +9,19 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import yaml
 
+from rotctl.documents import from_yaml
+from rotctl.errors import InputError
 from rotctl.results.found import DAMAGED, FAILED, MISSING, Found, found
 from rotctl.results.keys import value_at
 
-SUMMARY_TEXT = ("run_id", "behaviour", "seed", "success", "failure_reason")
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-_SEED = re.compile(r"^seed: (\d+)\n", re.MULTILINE)
+MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
+# What is no metric, and what `rotctl.results.groups` and the report add.
+_TAKEN = (
+    *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
+    *("n", "succeeded", "success_rate", "success_low", "success_high", "no_result", "label"),
+)
+_SEED = re.compile(r"^seed: (\d{1,19})\n", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -50,9 +55,11 @@ def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
     configs = {run.run_id: config_of(run.config) for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
     keys += [key for key in _differing(configs.values()) if key not in keys]
-    keys = [*(key for key in keys if key != "seed"), "seed"]
-    metrics = list(dict.fromkeys(k for run in runs for k in run.outcome if k not in SUMMARY_TEXT))
-    columns = {key: f"config.{key}" if key in metrics else key for key in keys}
+    if len(keys) > MOST:
+        notes = [*notes, f"the configs differ in {len(keys)} keys; {MOST} of them are columns"]
+    keys = [*[key for key in keys if key != "seed"][: MOST - 1], "seed"]
+    metrics = list(dict.fromkeys(k for run in runs for k in run.outcome if k not in _TAKEN))[:MOST]
+    columns = _columns(keys, metrics)
     rows = []
     for run in runs:
         data = configs.get(run.run_id)
@@ -71,6 +78,19 @@ def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
         )
     rows.sort(key=lambda row: [_order(row[name]) for name in [*columns.values(), "run_id"]])
     return Table(pd.DataFrame(rows), list(columns.values()), metrics, notes + _missing(runs))
+
+
+def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
+    """Config keys to columns: `config.<key>` where something that is measured is called so."""
+    columns: dict[str, str] = {}
+    taken = {*metrics, *_TAKEN} - {"behaviour", "seed"}
+    for key in keys:
+        column = key
+        while column in taken:
+            column = f"config.{column}"
+        columns[key] = column
+        taken.add(column)
+    return columns
 
 
 def _missing(runs: Iterable[Found]) -> list[str]:
@@ -102,8 +122,8 @@ def without_seed(text: str) -> str:
 @cache
 def _parsed(text: str) -> dict[str, Any]:
     try:
-        data = yaml.load(text, Loader=_LOADER)
-    except yaml.YAMLError:
+        data = from_yaml("", text)
+    except InputError:
         return {}
     return data if isinstance(data, dict) else {}
 

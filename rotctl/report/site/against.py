@@ -1,10 +1,13 @@
 """What changed between two reports: claims that got better, worse, came or went."""
 
 import csv
+import io
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from rotctl import files
 from rotctl.errors import InputError
 from rotctl.metrics.claims import NOT_TESTED, VERDICTS
 from rotctl.report.site.study import Line
@@ -13,6 +16,7 @@ from rotctl.report.title import plain
 NAME = "claims.csv"
 LARGEST = 10_000_000  # [bytes]
 Key = tuple[str, str, str]
+_KEY = ("sweep", "experiment", "id")
 
 
 @dataclass(frozen=True)
@@ -36,24 +40,28 @@ def read(path: Path) -> dict[Key, str]:
     Raises:
         InputError: there is none.
     """
-    file = path / NAME if path.is_dir() else path
+    folder = os.path.isdir(path)
+    file = path / NAME if folder else path
+    if not os.path.lexists(file):
+        raise InputError(f"--against {path}: no report, there is no {file}")
+    text = files.text(file, LARGEST, linked=not folder)
     try:
-        if file.stat().st_size > LARGEST:
-            raise InputError(f"{file}: larger than {LARGEST} bytes")
-        with file.open(encoding="utf-8", newline="") as stream:
-            rows = list(csv.DictReader(stream))
-    except FileNotFoundError:
-        raise InputError(f"--against {path}: no report, there is no {file}") from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"{file}: cannot be read: {error}") from None
-    found = {}
-    for number, row in enumerate(rows, 2):
-        key = (row.get("sweep"), row.get("experiment"), row.get("id"))
-        verdict = row.get("verdict")
-        if verdict not in VERDICTS or None in key:
-            raise InputError(f"{file}: line {number} is no claim with its verdict")
-        found[tuple(str(part) for part in key)] = verdict
-    return found  # type: ignore[return-value]
+        head, *rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+    except (csv.Error, ValueError):  # no rows at all
+        head, rows = [], []
+    if not {*_KEY, "verdict"} <= set(head):
+        wanted = ", ".join((*_KEY, "verdict"))
+        raise InputError(f"{file}: is no {NAME} of a report, its columns must include {wanted}")
+    found: dict[Key, str] = {}
+    for number, row in enumerate(rows, 1):
+        claim = dict(zip(head, row, strict=False))
+        if len(row) != len(head) or claim["verdict"] not in VERDICTS:
+            raise InputError(f"{file}: row {number} is no claim with its verdict")
+        key = (claim["sweep"], claim["experiment"], claim["id"])
+        if key in found:
+            raise InputError(f"{file}: row {number} judges {plain('/'.join(key))} again")
+        found[key] = claim["verdict"]
+    return found
 
 
 def changes(old: Mapping[Key, str], new: Sequence[Line]) -> Changes:

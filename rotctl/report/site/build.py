@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from rotctl.files import encoded
 from rotctl.report import replay
 from rotctl.report.site import pages, texts
 from rotctl.report.site.charts import charts
@@ -72,9 +73,9 @@ def report(
     claims = lines(every)
     files |= {
         SCRIPT: replay.code().encode(),
-        "claims.csv": texts.claims_csv(claims).encode(),
-        "junit.xml": texts.junit_xml(claims).encode(),
-        "summary.md": texts.summary_md(every, notes).encode(),
+        "claims.csv": encoded(texts.claims_csv(claims)),
+        "junit.xml": encoded(texts.junit_xml(claims)),
+        "summary.md": encoded(texts.summary_md(every, notes)),
         "index.html": pages.page(
             "index.html",
             answer=answer(claims),
@@ -122,7 +123,7 @@ def _page_of(sweep: Sweep, name: str, files: Files) -> str:
         files[f"charts/{name}-{chart.name}-light.svg"] = chart.light
         files[f"charts/{name}-{chart.name}-dark.svg"] = chart.dark
     groups = grouped(sweep.table).rows
-    files[f"sweeps/{name}.csv"] = groups.to_csv(index=False).encode()
+    files[f"sweeps/{name}.csv"] = encoded(groups.to_csv(index=False))
     address = f"sweeps/{name}.html"
     files[address] = pages.page(
         "sweep.html",

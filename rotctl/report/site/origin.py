@@ -1,6 +1,5 @@
 """Where results come from: machines, versions, code, configs, seeds, and what they cost."""
 
-import json
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from rotctl.documents import from_json
 from rotctl.report.site.words import NOTHING, count, number, ranges
 from rotctl.report.title import plain
 from rotctl.results.found import DONE, Found
@@ -68,8 +68,8 @@ def _counted(found: Iterable[str]) -> list[str]:
 def _pairs(text: Any) -> str:
     """JSON of a log in words."""
     try:
-        data = json.loads(str(text))
-    except (ValueError, RecursionError):
+        data = from_json(str(text))
+    except ValueError:
         data = None
     if not isinstance(data, Mapping):
         return "unknown"

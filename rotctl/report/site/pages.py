@@ -9,6 +9,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from rotctl import __version__
+from rotctl.files import encoded
 from rotctl.metrics.claims import NOT_REPRODUCED, NOT_TESTED, PARTLY, REPRODUCED, SUCCESS_RATE
 from rotctl.report.policy import BESIDE, policy, this
 from rotctl.report.site import words
@@ -40,7 +41,7 @@ def page(template: str, **values: Any) -> bytes:
             version=__version__,
         )
     )
-    return text.encode()
+    return encoded(text)
 
 
 @cache

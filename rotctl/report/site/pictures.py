@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rotctl.errors import RotctlError
+from rotctl.files import encoded
 from rotctl.log import RunLog
 from rotctl.report import replay
 from rotctl.report.filmstrip import strip
@@ -58,10 +59,10 @@ def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
 def _picture(role: str, run: Found, folder: Path, name: str, put: Put) -> Picture:
     address, drawn, trouble = "", "", ""
     try:
-        log = RunLog.open(folder / run.log)
+        log = RunLog.open(folder / run.log, linked=False)
         top = title(log)
         site = replay.Site(f"../{SCRIPT}", "../index.html")
-        put(f"replays/{name}.html", replay.page(log, site=site).encode())
+        put(f"replays/{name}.html", encoded(replay.page(log, site=site)))
         address = f"replays/{name}.html"
     except RotctlError as error:
         return Picture(role, run.run_id, "", "", "", f"no replay: {_short(error, folder)}")

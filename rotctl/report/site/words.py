@@ -33,7 +33,8 @@ def number(value: float | None, metric: str = "") -> str:
         return NOTHING
     if metric == SUCCESS_RATE:
         return f"{100 * value:.0f}"
-    text = f"{round(value, 3) + 0.0:.3g}" if abs(value) < 1000 else f"{value:.0f}"  # no -0
+    small = abs(value) < 1000 or abs(value) > 1e9
+    text = f"{round(value, 3) + 0.0:.3g}" if small else f"{value:.0f}"  # no -0
     return text.replace("-", "\u2212")
 
 
