@@ -42,6 +42,10 @@ run: setup ## simulate a forward roll, with a progress bar; writes the log and a
 test: lint ## lint, types, floors, then the fast tests
 	$(BIN)/python -m pytest --numprocesses auto
 
+.PHONY: readme
+readme: setup ## put what `make run` prints into README.md, after a change that rolls otherwise
+	$(BIN)/python tests/readme_sample.py
+
 .PHONY: torture
 torture: setup ## the long tests: sweeps of 200 runs whose processes are killed again and again
 	$(BIN)/python -m pytest -m slow

@@ -1,17 +1,16 @@
 """A process of its own: runs configs, and prints what all they made comes down to."""
 
 import hashlib
+import importlib
 import json
 import sys
 from dataclasses import replace
 from pathlib import Path
 
 from rotctl.config import check
-from rotctl.control import compiled
 from rotctl.log import collect
 from rotctl.run import in_memory, summarise
 from rotctl.scenario import build
-from rotctl.simulation import pgs
 
 
 def digest(config):
@@ -31,10 +30,10 @@ def digest(config):
 def main():
     """From stdin: what to run, for how long [s], and the libraries to use, if not those built."""
     order = json.load(sys.stdin)
-    if order["libraries"]:
-        compiled.LIBRARY, pgs.LIBRARY = map(Path, order["libraries"])
-        assert compiled.library()
-        assert pgs.library()
+    for name, library in order["libraries"].items():
+        module = importlib.import_module(name)
+        module.LIBRARY = Path(library)
+        assert module.library(), library
     runs = {
         name: digest(replace(check(config), duration=order["duration"]))
         for name, config in order["configs"].items()

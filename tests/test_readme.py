@@ -5,13 +5,17 @@ import shlex
 from pathlib import Path
 
 import pytest
+import readme_sample
 
 from rotctl.cli import main
+from rotctl.control import compiled
 from rotctl.log import RunLog
+from rotctl.log.provenance import libm
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 COMMANDS = re.findall(r"^\.venv/bin/rotctl ([^#\n]*)", README, flags=re.MULTILINE)
+LIBM = "4448391d"  # of glibc on a processor with FMA
 RUNS = [line for line in COMMANDS if line.startswith("run ")]
 
 
@@ -35,6 +39,18 @@ def test_other_commands(line, capsys):
         code = end.code
     assert code == 0
     assert capsys.readouterr().out
+
+
+def test_the_sample_is_what_everybody_gets():
+    """The bits of a run are the same everywhere, so its figures are; `make readme` renews them."""
+    if compiled.library() is None or libm() != LIBM:
+        pytest.skip("no C compiler at installation, or a C library that rounds otherwise")
+    here, there = (
+        [line for line in lines if not re.match(" *(real time|filmstrip) ", line)]
+        for lines in (readme_sample.printed(), readme_sample.shown())
+    )
+    assert len(here) == 7
+    assert here == there, "the README is old; make readme"
 
 
 def test_the_python_example_reads_a_log(tmp_path, capsys):

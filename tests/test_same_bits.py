@@ -33,7 +33,6 @@ pytestmark = [
     ),
 ]
 WORKER = Path(__file__).with_name("bits_of_runs.py")
-SOURCES = [ROOT / source for source in hatch_build.SOURCES]
 KERNELS = {"Haswell": "avx2", "SkylakeX": "avx512f", "Prescott": ""}  # and what each needs
 FEATURES = collect()["machine"]["features"].split()
 SIMD = " ".join(np.show_config(mode="dicts")["SIMD Extensions"]["found"])  # beyond numpy's baseline
@@ -73,14 +72,14 @@ def expected(configs):
     return of
 
 
-def runs(configs, duration, kernel, threads, libraries=(), simd=""):
+def runs(configs, duration, kernel, threads, libraries=None, simd=""):
     """Name of a config -> digest of its run and the fallbacks it took, in another process."""
     environment = {
         "OPENBLAS_CORETYPE": kernel,
         **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), str(threads)),
         **({"NPY_DISABLE_CPU_FEATURES": simd} if simd else {}),
     }
-    order = {"configs": configs, "duration": duration, "libraries": list(map(str, libraries))}
+    order = {"configs": configs, "duration": duration, "libraries": libraries or {}}
     done = subprocess.run(
         [sys.executable, "-W", "error", str(WORKER)],
         input=json.dumps(order),
@@ -97,15 +96,16 @@ def runs(configs, duration, kernel, threads, libraries=(), simd=""):
 
 
 def built(folder, name):
-    """The C libraries, by that compiler."""
+    """Module -> its C library, by that compiler."""
     compiler, *flags = COMPILERS[name]
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler} here: what it builds was not tried")
-    libraries = []
-    for source in SOURCES:
-        libraries.append(folder / f"{source.stem}.so")
-        command = [compiler, *flags, f"-I{hatch_build._mujoco_headers()}", source, "-lm"]
-        subprocess.run([*command, "-o", libraries[-1]], check=True, capture_output=True)
+    libraries = {}
+    for source in hatch_build.SOURCES:
+        library = folder / f"{source.stem}.so"
+        command = [compiler, *flags, f"-I{hatch_build._mujoco_headers()}", ROOT / source, "-lm"]
+        subprocess.run([*command, "-o", library], check=True, capture_output=True)
+        libraries[".".join(source.with_suffix("").parts)] = str(library)
     return libraries
 
 
