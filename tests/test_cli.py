@@ -276,6 +276,13 @@ def test_any_path_can_be_printed(tmp_path):
 # ---------------------------------------------------------------- help, list, show, inspect
 
 
+def test_one_blas_thread_whatever_the_shell_says(cli, monkeypatch):
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.setenv(name, "4")
+        cli("list")
+        assert os.environ[name] == "1"
+
+
 def test_help_needs_no_heavy_import():
     script = (
         "import sys; from rotctl.cli import main\n"
