@@ -1,5 +1,8 @@
 """Contacts that are one to control: which, that they stay real contacts, and what that changes."""
 
+from dataclasses import replace
+from itertools import islice
+
 import mujoco
 import numpy as np
 import pytest
@@ -11,7 +14,7 @@ from rotctl.mechanics.contacts import Contacts, contact_jacobian, read_contacts
 from rotctl.mechanics.merging import APART, Merging, merged
 from rotctl.mechanics.state import read
 from rotctl.scenario import build
-from rotctl.simulation.start import place
+from rotctl.simulation.episode import Episode
 
 NEAR = Merging(distance=0.03, angle=45.0)
 
@@ -68,13 +71,10 @@ def test_no_contacts_are_no_contacts():
     assert merged(nothing, NEAR).count == 0
 
 
-def lying(scenario, x, y, pose):
-    """Data of the character laid down at (x, y), a little into the ground."""
-    model = scenario.model
-    data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, scenario.behaviour.orientation, pose)
+def lying(scenario, x, y):
+    """Data of the character in its start posture at (x, y), a little into the ground."""
+    model, data = scenario.model, Episode(scenario).data
     data.qpos[:2] = x, y
-    mujoco.mj_kinematics(model.mj, data)
     data.qpos[2] += model.ground.height(x, y) - 0.005
     mujoco.mj_step1(model.mj, data)
     return data
@@ -85,8 +85,7 @@ def on_hills():
     """States of a body on hills, in which some contact has a twin."""
     scenario = build(load(["terrain=uneven", "seed=3"]))
     places = np.random.default_rng(5).uniform((5.0, -4.0), (50.0, 4.0), (60, 2))
-    pose = scenario.behaviour.pose(0.0)
-    return scenario, [lying(scenario, x, y, pose) for x, y in places]
+    return scenario, [lying(scenario, x, y) for x, y in places]
 
 
 def test_what_stays_are_contacts_of_the_physics(on_hills):
@@ -95,7 +94,7 @@ def test_what_stays_are_contacts_of_the_physics(on_hills):
     mj, dropped = scenario.model.mj, 0
     for data in states:
         everything = read_contacts(mj, data)
-        found = read(scenario.model, data, NEAR).contacts
+        found = read(scenario.model, data, merging=NEAR).contacts
         assert set(found.row.tolist()) <= set(everything.row.tolist())
         assert found.row.tolist() == sorted(found.row.tolist())
         dropped += everything.count - found.count
@@ -130,23 +129,24 @@ def test_each_that_went_is_one_with_one_that_stayed(on_hills):
 def test_both_backends_see_the_same(physics):
     """Along a roll over hills, which the compiled one drives."""
     scenario = build(load(["behaviour=uneven_terrain", f"physics={physics}", "seed=3"]))
-    model, behaviour, controller = scenario.model, scenario.behaviour, scenario.controller
+    model, controller, dropped = scenario.model, scenario.controller, []
     assert controller.backend == "compiled"
-    data = mujoco.MjData(model.mj)
-    place(model, data, scenario.start, behaviour.orientation, behaviour.pose(scenario.start.pitch))
-    now, blend, dropped = behaviour.begin(scenario.start.pitch), 0.5, 0
-    for _ in range(240):
-        scenario.stepper.evaluate(data)
-        found = controller.read(data)
-        expected = read(model, data, controller.settings.merging).contacts
-        for name in vars(expected):
-            assert getattr(found.contacts, name).tolist() == getattr(expected, name).tolist()
-        dropped += read(model, data).contacts.count - expected.count
-        now = behaviour.advance(now, found)
-        decision = controller.decide(found, behaviour.desired(found, now), blend)
-        blend = decision.blend
-        scenario.stepper.advance(data, decision.torque, found.contacts)
-    assert dropped > 50
+
+    class Both:
+        """The compiled step, whose every reading is compared."""
+
+        settings, decide = controller.settings, controller.decide
+
+        def read(self, data):
+            found = controller.read(data)
+            expected = read(model, data, merging=self.settings.merging).contacts
+            for name in vars(expected):
+                assert getattr(found.contacts, name).tolist() == getattr(expected, name).tolist()
+            dropped.append(read(model, data).contacts.count - expected.count)
+            return found
+
+    assert len(list(islice(Episode(replace(scenario, controller=Both())), 240))) == 240
+    assert sum(dropped) > 50
 
 
 def test_level_ground_has_none_to_merge():
@@ -154,15 +154,8 @@ def test_level_ground_has_none_to_merge():
     decided = []
     for distance in (0.0, 0.03):
         scenario = build(load(["seed=2", f"controller.merging.distance={distance}"]))
-        data = mujoco.MjData(scenario.model.mj)
-        behaviour = scenario.behaviour
-        place(scenario.model, data, scenario.start, behaviour.orientation, behaviour.pose(0.0))
-        data.qpos[2] -= 2e-3
-        scenario.stepper.evaluate(data)
-        state = scenario.controller.read(data)
-        now = behaviour.advance(behaviour.begin(0.0), state)
-        decided.append(scenario.controller.decide(state, behaviour.desired(state, now), 0.5))
-    assert decided[0].torque.tobytes() == decided[1].torque.tobytes()
+        decided.append([m.decision.torque for m in islice(Episode(scenario), 60)])
+    assert np.array_equal(*decided)
 
 
 @pytest.mark.parametrize(

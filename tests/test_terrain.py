@@ -15,8 +15,8 @@ from rotctl.mechanics.model import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.run import LOG_NAME, run
 from rotctl.scenario import build, model_of
+from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
-from rotctl.simulation.start import place
 
 ENDLESS = ["flat", "incline", "decline"]
 FINITE = ["uneven", "bumps", "stairs_down", "stairs_up", "obstacles"]
@@ -67,15 +67,7 @@ def test_normals_are_unit_and_stand_on_the_slope(scenario):
 
 
 def test_starts_touch_the_ground_and_do_not_sink_in(scenario):
-    model = scenario.model
-    data = mujoco.MjData(model.mj)
-    place(
-        model,
-        data,
-        scenario.start,
-        scenario.behaviour.orientation,
-        scenario.behaviour.pose(scenario.start.pitch),
-    )
+    model, data = scenario.model, Episode(scenario).data
     mujoco.mj_forward(model.mj, data)
     solid = np.flatnonzero((model.mj.geom_bodyid[data.contact.geom] == 0).any(axis=1))
     assert (data.contact.dist[solid] > -0.005).all()
@@ -127,8 +119,7 @@ def test_a_longer_duration_changes_nothing_before(overrides):
     config, buffers = load([*overrides, "seed=4"]), []
     for seconds in (2.0, 60.0):
         scenario = build(replace(config, duration=seconds))
-        parts = (scenario.model, scenario.behaviour, scenario.controller, scenario.stepper)
-        buffers.append(simulate(*parts, scenario.start, 1.5, 64).buffer)
+        buffers.append(simulate(scenario, 1.5, 64).buffer)
     for name, array in buffers[0].arrays().items():
         assert array.tobytes() == buffers[1].arrays()[name].tobytes(), name
 

@@ -59,8 +59,8 @@ class StartSettings:
     description: str = ""
 
     def __post_init__(self) -> None:
-        if self.scatter and not self.postures:
-            raise ValueError("scatter is about postures, and there are none")
+        if (self.scatter or self.tilt) and not self.postures:
+            raise ValueError("scatter and tilt are about postures, and there are none")
 
 
 @dataclass(frozen=True)
