@@ -204,13 +204,13 @@ def sweep(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.results import experiments
-    from rotctl.sweep.workers import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
     from rotctl.sweep.points import points
     from rotctl.sweep.progress import shown
     from rotctl.sweep.said import at_the_end, at_the_start, failures, without_running
+    from rotctl.sweep.workers import make_engine
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")

@@ -20,6 +20,7 @@ from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl import documents
 from rotctl.behaviours import BehaviourSettings
 from rotctl.checked import adapter, brief, checked, clip, unknown_key
 from rotctl.control import ControllerSettings
@@ -79,7 +80,7 @@ def recorded(log: RunLog) -> Config:
         LogError: this rotctl cannot run it; one line that says why.
     """
     try:
-        return check(yaml.safe_load(log.config_yaml))
+        return check(documents.from_yaml("config", log.config_yaml))
     except InputError as error:
         raise LogError(f"{log.path}: its config makes no run here: {error}") from None
 

@@ -145,10 +145,10 @@ def _unlike(there: Mapping[str, Any], here: Mapping[str, Any]) -> list[str]:
 
 
 def _led_to(scenario: Scenario, log: RunLog) -> int:
-    """How many of the log's states its first one and its torques lead to here."""
+    """How many of the log's states its first one, its torques and what disturbs lead to here."""
     mj, stepper, torques = scenario.model.mj, scenario.stepper, log["trajectory/ctrl"]
     states = zip(log["trajectory/qpos"], log["trajectory/qvel"], strict=True)
-    data = mujoco.MjData(mj)
+    period, data = 1.0 / scenario.config.controller.rate, mujoco.MjData(mj)
     with quiet():
         for row, (qpos, qvel) in enumerate(states):
             if row == 0:
@@ -156,6 +156,7 @@ def _led_to(scenario: Scenario, log: RunLog) -> int:
             stepper.evaluate(data)
             if not (_same(data.qpos, qpos) and _same(data.qvel, qvel)):
                 return row
+            scenario.disturbance.apply(data, period)
             stepper.advance(data, torques[row], scenario.controller.read(data).contacts)
     return log.steps
 

@@ -28,12 +28,12 @@ def digest(config):
 
 
 def main():
-    """From stdin: what to run, for how long [s], and the libraries to use, if not those built."""
+    """From stdin: what to run, for how long [s], and the library to use, if not the one built."""
     order = json.load(sys.stdin)
-    for name, library in order["libraries"].items():
-        module = importlib.import_module(name)
-        module.LIBRARY = Path(library)
-        assert module.library(), library
+    if order["library"]:
+        native = importlib.import_module("rotctl.native.library")
+        native.LIBRARY = Path(order["library"])
+        assert native.library()
     runs = {
         name: digest(replace(check(config), duration=order["duration"]))
         for name, config in order["configs"].items()

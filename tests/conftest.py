@@ -9,13 +9,13 @@ import mujoco
 import numpy as np
 import pytest
 from browser import Browser, executable
+from rotctl.control.targets import momentum_rates
+from rotctl.control.terms import collect
 
 from rotctl import config
 from rotctl.config import load
 from rotctl.control import Decision, Desired
 from rotctl.control.pose import PoseTracker
-from rotctl.control.targets import momentum_rates
-from rotctl.control.terms import collect
 from rotctl.errors import InputError
 from rotctl.mechanics.state import read
 from rotctl.report import gl

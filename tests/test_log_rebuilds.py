@@ -6,9 +6,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-import yaml
 
-from rotctl.config import check, load
+from rotctl.config import load, recorded
 from rotctl.listing import choices
 from rotctl.log import RunLog
 from rotctl.report import stored_model
@@ -62,7 +61,7 @@ def by_mujoco(model, log):
 
 def in_lockstep(model, log):
     """Its steps are rotctl's own; their settings are in the log, too."""
-    scenario = build(check(yaml.safe_load(log.config_yaml)))
+    scenario = build(recorded(log))
     stepper = scenario.stepper
     stepper._mj = model
     data = at_first(model, log)

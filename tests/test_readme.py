@@ -8,9 +8,9 @@ import pytest
 import readme_sample
 
 from rotctl.cli import main
-from rotctl.control import compiled
 from rotctl.log import RunLog
 from rotctl.log.provenance import libm
+from rotctl.native import library
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -43,7 +43,7 @@ def test_other_commands(line, capsys):
 
 def test_the_sample_is_what_everybody_gets():
     """The bits of a run are the same everywhere, so its figures are; `make readme` renews them."""
-    if compiled.library() is None or libm() != LIBM:
+    if library() is None or libm() != LIBM:
         pytest.skip("no C compiler at installation, or a C library that rounds otherwise")
     here, there = (
         [line for line in lines if not re.match(" *(real time|filmstrip) ", line)]

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from rotctl.config import composed
-from rotctl.control import compiled
 from rotctl.log import collect
+from rotctl.native import library
 from rotctl.results import experiments
 
 ROOT = Path(__file__).parent.parent
@@ -24,8 +24,8 @@ import hatch_build  # noqa: E402
 
 pytestmark = [
     pytest.mark.skipif(
-        compiled.library() is None,
-        reason="the compiled control step is not built here (no C compiler at installation)",
+        library() is None,
+        reason="the compiled library is not built here (no C compiler at installation)",
     ),
     pytest.mark.skipif(
         "avx2" not in collect()["machine"]["features"].split(),
@@ -72,14 +72,14 @@ def expected(configs):
     return of
 
 
-def runs(configs, duration, kernel, threads, libraries=None, simd=""):
+def runs(configs, duration, kernel, threads, native="", simd=""):
     """Name of a config -> digest of its run and the fallbacks it took, in another process."""
     environment = {
         "OPENBLAS_CORETYPE": kernel,
         **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), str(threads)),
         **({"NPY_DISABLE_CPU_FEATURES": simd} if simd else {}),
     }
-    order = {"configs": configs, "duration": duration, "libraries": libraries or {}}
+    order = {"configs": configs, "duration": duration, "library": str(native)}
     done = subprocess.run(
         [sys.executable, "-W", "error", str(WORKER)],
         input=json.dumps(order),
@@ -96,17 +96,18 @@ def runs(configs, duration, kernel, threads, libraries=None, simd=""):
 
 
 def built(folder, name):
-    """Module -> its C library, by that compiler."""
+    """The C library, by that compiler."""
     compiler, *flags = COMPILERS[name]
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler} here: what it builds was not tried")
-    libraries = {}
-    for source in hatch_build.SOURCES:
-        library = folder / f"{source.stem}.so"
-        command = [compiler, *flags, f"-I{hatch_build._mujoco_headers()}", ROOT / source, "-lm"]
-        subprocess.run([*command, "-o", library], check=True, capture_output=True)
-        libraries[".".join(source.with_suffix("").parts)] = str(library)
-    return libraries
+    source, library = ROOT / hatch_build.SOURCE, folder / "_native.so"
+    given = [
+        f'-DROTCTL_SOURCE="{hatch_build._source_hash(source.parent)}"',
+        f"-I{hatch_build._mujoco_headers()}",
+    ]
+    command = [compiler, *flags, *given, source, "-o", library, "-lm"]
+    subprocess.run(command, check=True, capture_output=True)
+    return library
 
 
 def can_take(kernel):

@@ -48,6 +48,13 @@ def said(capsys, *arguments):
 
 
 def with_row(log, folder, name, row):
+    """The log with one row of a dataset a little different."""
+    array = log[name].copy()
+    array[row] += np.array(1e-6, array.dtype)
+    return changed(log, folder, {name: array})
+
+
+def with_bit(log, folder, name, row):
     """The log with the last bit of one number another."""
     array = log[name].copy()
     numbers = array.reshape(len(array), -1)
@@ -99,7 +106,7 @@ def test_other_code_that_gives_the_same_bits_is_named(log, tmp_path, capsys):
 # ---------------------------------------------------------------- not the same
 
 
-def test_a_torque_of_which_one_bit_is_another(log, tmp_path, capsys):
+def test_torques_that_are_a_little_different(log, tmp_path, capsys):
     other = with_row(log, tmp_path, "trajectory/ctrl", 12)
     assert said(capsys, other.path) == (
         1,
@@ -110,7 +117,7 @@ def test_a_torque_of_which_one_bit_is_another(log, tmp_path, capsys):
 
 
 def test_what_no_state_follows_from_leaves_physics_in_peace(log, tmp_path, capsys):
-    other = with_row(log, tmp_path, "contacts/force_predicted", 7)
+    other = with_bit(log, tmp_path, "contacts/force_predicted", 7)
     assert said(capsys, other.path) == (
         1,
         f"{other.path}: same up to t = 0.117 s, step 7 of {ROWS}, then other: "
@@ -128,6 +135,15 @@ def test_many_datasets_are_counted(log, tmp_path, capsys):
         f"{other.path}: same up to t = 0.000 s, step 0 of {ROWS}, then other: "
         "trajectory/qpos, trajectory/qvel, trajectory/ctrl and 2 more"
     )
+
+
+@pytest.mark.parametrize("kind", ["push", "wind"])
+def test_what_disturbs_a_run_is_repeated_with_it(kind, tmp_path):
+    log = logged(tmp_path, f"disturbance={kind}", "duration=1.7")
+    assert log["disturbance/wrench"].any()
+    assert repeat(log).same
+    found = repeat(with_bit(log, tmp_path, "trajectory/phase", 7))
+    assert (found.parted, found.physics) == (7, log.steps)
 
 
 @pytest.mark.parametrize(("name", "value"), [("nan", np.nan), ("minus zero", -0.0)])

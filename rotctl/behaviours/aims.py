@@ -4,7 +4,7 @@ An aim fills a task's target, velocity and acceleration at one instant; which ki
 serves stands in its docstring.
 """
 
-from math import copysign, sqrt
+from math import atan2, copysign
 from typing import Annotated, Literal
 
 import numpy as np
@@ -56,7 +56,7 @@ class Upright:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         forward = scene.axes[0]
-        half = 0.5 * np.arctan2(forward[1], forward[0])
+        half = 0.5 * atan2(forward[1], forward[0])
         task["target"] = [np.cos(half), 0.0, 0.0, np.sin(half)]
 
 

@@ -47,7 +47,7 @@ class _Constants(ctypes.Structure):
 
 # Names and shapes of what a reading begins with.
 _MOMENTUM = {
-    **{name: (3,) for name in ("com", "com_velocity", "linear", "angular")},
+    **dict.fromkeys(("com", "com_velocity", "linear", "angular"), (3,)),
     "inertia": (3, 3),
     "angular_velocity": (3,),
     "root_rotation": (3, 3),

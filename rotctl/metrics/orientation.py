@@ -72,9 +72,8 @@ def measure(
         return OrientationMetrics(*[math.nan] * len(COLUMNS))
     error = np.abs(turned - target)
     late = np.flatnonzero(error > criteria.error)
-    rise = np.degrees(
-        np.arcsin(np.clip(np.abs(in_frame(log, "trajectory/trunk_axis")[:, 2]), 0, 1))
-    )
+    sine = np.clip(np.abs(in_frame(log, "trajectory/trunk_axis")[:, 2]), 0, 1)
+    rise = np.degrees([math.asin(one) for one in sine.tolist()])
     speed = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
     last = slice(-round(criteria.rest / period), None)
     return OrientationMetrics(

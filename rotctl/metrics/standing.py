@@ -58,7 +58,7 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
     if not len(com):
         return StandingMetrics(*[math.nan] * len(COLUMNS))
     up = floats(log, "trajectory/trunk_axes")[:, 2, 2]
-    lean = np.degrees(np.arccos(np.clip(up, -1.0, 1.0)))
+    lean = np.degrees([math.acos(one) for one in np.clip(up, -1.0, 1.0).tolist()])
     velocity = floats(log, "trajectory/com_velocity")
     speed = np.sqrt((velocity**2).sum(axis=1))
     height = com[:, 2] - floats(log, "trajectory/ground_height")

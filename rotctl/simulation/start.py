@@ -15,7 +15,6 @@ from rotctl.mechanics.model import Model, is_character
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
 
-
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
 
