@@ -21,14 +21,14 @@ from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.sweeps import sweeps
 
-ARGUMENTS = ["behaviour=forward_roll_1,decline", "seed=range(0,3)", "duration=0.5"]
+ARGUMENTS = ["behaviour=forward_roll_1,decline", "seed=range(0,3)", "duration=2"]
 EXPERIMENT = """
 title: A test of <b>rolls</b>
 source: "[Brown2013] Table 1"
 matrix: [["behaviour=forward_roll_1,decline"]]
 seeds: range(0,3)
 deviations: [{text: Poses are ours., where: {behaviour: decline}}, {text: Another simulator.}]
-limitations: [Half a second is short.]
+limitations: [Two seconds are short.]
 claims:
   - {id: roll, metric: success_rate, comparison: at_least, expected: 0.9, tolerance: 0.0,
      source: paper, where: {behaviour: forward_roll_1}}
@@ -139,7 +139,7 @@ def test_rows_show_what_was_commanded_and_reached(site):
     assert "100 % [44, 100] of 3 runs" in text
     assert "of 1.3 commanded" in text
     assert "at least 90 %" in text
-    assert "Half a second is short." in text
+    assert "Two seconds are short." in text
     assert text.count("Poses are ours.") == 2  # at its row and in the list
     assert "Only 3 starts a row, so that the intervals are wide." in text
     assert "6 with a result, 0 without" in text

@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.metrics.rolling import (
+    IN_FILES_ONLY,
     OF_REVOLUTIONS,
     RollingCriteria,
     RollingMetrics,
@@ -488,3 +489,7 @@ def test_a_run_of_less_than_a_revolution_says_nothing():
         found = measure(make_log(steps=80, rate=rate), CRITERIA, 0.5, PERIOD)
         reason = f"no whole revolution: turned {rate * 79 / 60:.2f} rev"
         assert failure_reason(found, CRITERIA, 80 * PERIOD) == reason
+
+
+def test_what_only_files_show_is_measured():
+    assert set(IN_FILES_ONLY) < set(vars(GOOD))

@@ -22,7 +22,7 @@ from rotctl.results.manifest import Entry, read, write
 from rotctl.results.table import Table, table
 from rotctl.run import make, run
 
-ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=0.5"]
+ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=2"]
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +90,7 @@ def test_a_row_a_run_with_the_overridden_keys_as_columns(made):
         (name, seed) for name in ("forward_roll_1", "forward_roll_1_phase") for seed in range(3)
     ]
     assert set(rows["status"]) == {"done"}
-    assert set(rows["config.duration"]) == {0.5}
+    assert set(rows["config.duration"]) == {2.0}
     assert found_.notes == []
     for _, row in rows.iterrows():
         summary = json.loads((made / row["run_id"] / "summary.json").read_text())
@@ -105,7 +105,7 @@ def test_the_command_prints_markdown_and_writes_csv(sweep, capsys):
     assert stderr == ""
     assert lines[0].startswith("| behaviour            | config.duration | n | success [95 %]  |")
     assert set(lines[1]) == set("| -")
-    assert lines[2].startswith("| forward_roll_1       | 0.5             | 3 | 100 % [44, 100] |")
+    assert lines[2].startswith("| forward_roll_1       | 2               | 3 | 100 % [44, 100] |")
     assert lines[-2:] == [str(sweep / "summary.csv"), str(sweep / "groups.csv")]
     rows = list(csv.DictReader(io.StringIO((sweep / "summary.csv").read_text())))
     assert len(rows) == 6

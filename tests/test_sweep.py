@@ -22,7 +22,7 @@ from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned
 from rotctl.sweep.points import points
 
-BRIEF = "duration=0.5"
+BRIEF = "duration=2"
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def test_dry_run_writes_nothing(cli, tmp_path):
     lines = stdout.splitlines()
     assert (code, stderr) == (0, "")
     assert lines[0] == f"8 runs, 8 of them not yet in {out}"
-    assert lines[1].endswith("  behaviour=forward_roll_1 seed=0 duration=0.5")
+    assert lines[1].endswith("  behaviour=forward_roll_1 seed=0 duration=2.0")
     assert lines[6] == "  ... and 3 more"
     assert lines[7].startswith("about ")
     assert not out.exists()

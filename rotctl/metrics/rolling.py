@@ -142,6 +142,16 @@ OF_REVOLUTIONS = (
     "travel_least",
     "travel_most",
 )
+# Too many for a table that people read: files have them, and a failure names its own.
+IN_FILES_ONLY = (
+    *OF_REVOLUTIONS,
+    "setback",
+    "height_least",
+    "height_most",
+    "penetration",
+    "ground_force_p99",
+    "ground_force_peak",
+)
 _ZERO_AT_FIRST = ("duration", "revolutions", "lateral_drift", "longest_stall", "stalled_at")
 _NO_ROWS: dict[str, Any] = {each.name: math.nan for each in fields(RollingMetrics)}
 NO_ROWS = RollingMetrics(**_NO_ROWS | dict.fromkeys(_ZERO_AT_FIRST, 0.0) | {"solver_failures": 0})

@@ -85,6 +85,21 @@ def count(axes: Any, run: Signals) -> None:
     legend(axes)
 
 
+def ground_force(axes: Any, run: Signals, weight: float) -> None:
+    """Of the whole body, in body weights."""
+    axes.plot(run.time, run.force_peak / weight, color=LIGHT, lw=0.6, label="peak in a step")
+    axes.plot(run.time, run.force / weight, color=ORANGE, lw=0.7, label="mean")
+    axes.set_ylim(0, None)
+    legend(axes)
+
+
+def height(axes: Any, run: Signals) -> None:
+    """Of the centre of mass above the ground below it."""
+    axes.plot(run.time, run.height, color=BLUE)
+    if np.isfinite(run.height).any():
+        axes.set_ylim(min(0.0, np.nanmin(run.height)), None)
+
+
 def torques(axes: Any, log: RunLog, rows: slice, time: Array) -> None:
     """Rows of colour: seven lines over each other could not be read."""
     groups = torque_fractions(log, rows)

@@ -4,6 +4,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -81,10 +83,11 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     run = signals(log, rows)
     model = stored_model.load(log)
     weight = model.body_subtreemass[1] * model.opt.gravity
+    pull = max(float(np.linalg.norm(weight)), 1.0)
     _heading(figure, log)
     grid = figure.add_gridspec(
-        7, 6, left=0.1, right=0.935, top=0.922, bottom=0.045, hspace=0.6, wspace=1.3,
-        height_ratios=[1, 1, 1, 1, 0.75, 1.45, 0.9],
+        8, 6, left=0.1, right=0.935, top=0.922, bottom=0.045, hspace=0.7, wspace=1.3,
+        height_ratios=[1, 1, 1, 1, 0.75, 0.8, 1.5, 0.9],
     )  # fmt: skip
 
     left, right = slice(0, 3), slice(3, 6)
@@ -111,9 +114,11 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
             draw.legend(figure.axes[-2], right=1.36)
     draw.blend(axes(4, left, "Blend \u03b3", "1"), run)
     draw.count(axes(4, right, "Contacts", "1"), run)
-    draw.torques(axes(5, left, "Torque as a fraction of its limit", ""), log, rows, run.time)
-    draw.gantt(axes(5, right, "Contacts by body part", ""), contact_bars(log, rows, model))
-    draw.solver(axes(6, slice(0, 6), "Solver", "iterations"), log, rows, run.time)
+    draw.ground_force(axes(5, left, "Ground force", "body weights"), run, pull)
+    draw.height(axes(5, right, "Centre of mass above the ground", "m"), run)
+    draw.torques(axes(6, left, "Torque as a fraction of its limit", ""), log, rows, run.time)
+    draw.gantt(axes(6, right, "Contacts by body part", ""), contact_bars(log, rows, model))
+    draw.solver(axes(7, slice(0, 6), "Solver", "iterations"), log, rows, run.time)
     for each in figure.axes:
         if each.get_subplotspec().is_last_row():
             each.set_xlabel("time [s]")

@@ -23,6 +23,9 @@ class Signals:
         turns: (n, 3) angular excursion; in-plane since the start of the run [rev].
         velocity: (n, 3) of the centre of mass [m/s].
         blend: (n,).
+        height: (n,) of the centre of mass above the ground [m]; NaN where the log does not tell.
+        force: (n,) magnitude of the ground's force, mean over a control step [N].
+        force_peak: (n,) its largest in a physics step [N]; NaN where the log does not tell.
         count: (n,) contacts with the ground.
         used: (n,) of these, kept by the supervisor.
         commanded_spin: in-plane [rev/s]; NaN where the outcome does not tell.
@@ -34,6 +37,9 @@ class Signals:
     turns: Array
     velocity: Array
     blend: Array
+    height: Array
+    force: Array
+    force_peak: Array
     count: Array
     used: Array
     commanded_spin: float
@@ -55,12 +61,19 @@ def signals(log: RunLog, rows: slice) -> Signals:
     turns[:, 1] -= turns[:1, 1]
     filled = log["contacts/body"][rows] >= 0
     outcome = log.outcome
+    time = log["trajectory/time"][rows]
+    unknown = np.full(len(time), math.nan)
+    newer = "contacts/ground_force" in log
+    height = log["trajectory/com"][:, 2] - log["trajectory/ground_height"] if newer else None
     return Signals(
-        time=log["trajectory/time"][rows],
+        time=time,
         spin=in_frame(log, "trajectory/angular_velocity")[rows] / TURN,
         turns=turns[rows],
         velocity=in_frame(log, "trajectory/com_velocity")[rows],
         blend=log["trajectory/blend"][rows],
+        height=unknown if height is None else height[rows],
+        force=np.linalg.norm(_ground_force(log, rows), axis=1),
+        force_peak=log["contacts/ground_force_peak"][rows] if newer else unknown,
         count=log["contacts/count"][rows].astype(float),
         used=(log["contacts/used"][rows] & filled).sum(axis=1).astype(float),
         commanded_spin=_number(outcome.get("angular_velocity_commanded")),
@@ -78,7 +91,7 @@ def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
     return Rates(
         desired=in_frame(log, "trajectory/linear_momentum_rate_desired")[rows],
         predicted=in_frame(log, "trajectory/linear_momentum_rate_predicted")[rows],
-        realised=product(_forces(log, rows).sum(axis=1) + weight, frame(log).T),
+        realised=product(_ground_force(log, rows) + weight, frame(log).T),
     )
 
 
@@ -110,6 +123,13 @@ def joint_group(name: str) -> str:
     for axis in ("_x", "_y", "_z"):
         name = name.removesuffix(axis)
     return name
+
+
+def _ground_force(log: RunLog, rows: slice) -> Array:
+    """Sum of the ground's forces (n, 3) [N]; logs of schema 2 know those with a slot alone."""
+    if "contacts/ground_force" in log:
+        return np.asarray(log["contacts/ground_force"][rows])
+    return np.asarray(_forces(log, rows).sum(axis=1))
 
 
 def _forces(log: RunLog, rows: slice) -> Array:

@@ -11,6 +11,7 @@ import pandas as pd
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.metrics.rates import wilson
+from rotctl.metrics.rolling import IN_FILES_ONLY
 from rotctl.results.found import DONE
 from rotctl.results.table import Table
 
@@ -96,10 +97,11 @@ def markdown(groups: Groups) -> str:
     """
     missing = bool(groups.rows["no_result"].any())
     rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
-    spreads = {metric: [_spread(row, metric) for row in rows] for metric in groups.metrics}
+    metrics = [metric for metric in groups.metrics if metric not in IN_FILES_ONLY]
+    spreads = {metric: [_spread(row, metric) for row in rows] for metric in metrics}
     constant = {metric for metric, texts in spreads.items() if len(set(texts)) == 1}
     constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
-    varying = [metric for metric in groups.metrics if metric not in constant]
+    varying = [metric for metric in metrics if metric not in constant]
     lines = [[*groups.keys, "n", *(["no result"] if missing else []), "success [95 %]", *varying]]
     for i, row in enumerate(rows):
         lines.append(
@@ -117,7 +119,7 @@ def markdown(groups: Groups) -> str:
         "| " + " | ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)) + " |"
         for line in lines
     ]
-    same = [f"{metric} {spreads[metric][0]}" for metric in groups.metrics if metric in constant]
+    same = [f"{metric} {spreads[metric][0]}" for metric in metrics if metric in constant]
     return "\n".join(table + ([f"\nThe same in all runs: {', '.join(same)}."] if same else []))
 
 
