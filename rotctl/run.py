@@ -222,7 +222,7 @@ def summarise(scenario: Scenario, buffer: TrajectoryBuffer, ending: str, wall: f
 
 
 def stored(folder: Path, run_id: str) -> RunLog:
-    """The run in `folder`, all of it checked; puts the files beside it back if a kill prevented them.
+    """The run in `folder`, all of it checked; puts back the files beside it after a kill.
 
     Raises:
         LogError: the log there is not whole, or of another run.

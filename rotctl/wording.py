@@ -2,8 +2,6 @@
 
 from typing import TYPE_CHECKING, Any
 
-from rotctl.metrics.judge import COLUMNS
-
 if TYPE_CHECKING:
     from rotctl.log import RunLog
     from rotctl.motion.flight import Flight
@@ -44,11 +42,11 @@ def readable(summary: dict[str, Any]) -> str:
             f"  stall        {number('longest_stall')} s at most",
         ]
     else:
+        from rotctl.metrics.judge import COLUMNS  # numpy: what only asks for help needs none
+
         known = [column for key, column in COLUMNS.items() if key in summary]
         wide = max((len(column.title) for column in known), default=0)
-        measured = [
-            f"  {c.title:{wide}}  {number(c.name, '.3g')} {c.unit}".rstrip() for c in known
-        ]
+        measured = [f"  {c.title:{wide}}  {number(c.name, '.3g')} {c.unit}".rstrip() for c in known]
     return "\n".join(
         [
             f"{name}  seed {seed}  run {run}  {verdict}",

@@ -1,4 +1,4 @@
-"""Which of the trunk's axes lies on the axis that a behaviour turns about, and along which heading."""
+"""Which of the trunk's axes lies on the axis that a behaviour turns about, and its heading."""
 
 import math
 from dataclasses import dataclass

@@ -6,11 +6,11 @@ log roll (lying across).
 
 In-plane (about the rolling axis, along the way) the angular velocity and the speed are held
 constant and their integrals are left free; out of plane, AE and AV are held at zero and the
-lateral and vertical velocities are damped. All of that is gains, along forward, left and up: a zero
-stiffness of `linear` along the way leaves the distance free, one of `spin` about the rolling axis the
-excursion. What is wanted runs ahead at the commanded rates all the same; with a stiffness it is
-tracked, which the paper shows to fail. ROOT control, which fails too, compares the root's
-orientation and angular velocity with what is wanted of the whole body's.
+lateral and vertical velocities are damped. All of that is gains, along forward, left and up: a
+zero stiffness of `linear` along the way leaves the distance free, one of `spin` about the
+rolling axis the excursion. What is wanted runs ahead at the commanded rates all the same; with a
+stiffness it is tracked, which the paper shows to fail. ROOT control, which fails too, compares
+the root's orientation and angular velocity with what is wanted of the whole body's.
 """
 
 import math

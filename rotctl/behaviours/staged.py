@@ -6,7 +6,7 @@ forward, left and up; the phase is the excursion about left, [AlBorno2014].
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -66,7 +66,7 @@ class Stage:
 
     Attributes:
         poses: key poses over the phase.
-        tasks: by name; the controller has gains under the same names.
+        tasks: by name, beside those of every stage.
         until: what ends it; nothing for the last stage alone.
         supervisor: in place of the controller's.
         held_out: bodies whose contacts control may not use.
@@ -74,7 +74,7 @@ class Stage:
 
     name: str
     poses: Poses
-    tasks: dict[str, TaskSettings]
+    tasks: dict[str, TaskSettings] = field(default_factory=dict)
     until: Until | None = None
     supervisor: SupervisorName | None = None
     held_out: tuple[str, ...] = ()
@@ -87,6 +87,7 @@ class StagedSettings:
     Attributes:
         roll_about: the trunk's axis that lies to the left.
         heading: of forward, from +x towards +y [deg].
+        tasks: of every stage, by name; the controller has gains under the same names.
         target_excursion: how far to turn about left [deg].
     """
 
@@ -95,6 +96,7 @@ class StagedSettings:
     roll_about: RollAbout
     heading: Finite
     stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
+    tasks: dict[str, TaskSettings] = field(default_factory=dict)
     target_excursion: Finite = 0.0
     source: str = ""
     description: str = ""
@@ -168,7 +170,7 @@ class Staged:
         self._target = math.radians(settings.target_excursion)
         found: dict[str, None] = {}
         for stage in settings.stages:
-            for name, wanted in stage.tasks.items():
+            for name, wanted in (settings.tasks | stage.tasks).items():
                 found.update(dict.fromkeys(_names(model, name, wanted)))
             if stage.until:
                 stage.until.check(model)
@@ -184,8 +186,9 @@ class Staged:
         rows: list[Tasks] = []
         fillers: list[tuple[int, str, Aim]] = []
         slots: list[int] = []
-        gains = gains_of(self._control, tuple(stage.tasks))
-        for name, wanted in stage.tasks.items():
+        every = self._settings.tasks | stage.tasks
+        gains = gains_of(self._control, tuple(every))
+        for name, wanted in every.items():
             key = f"behaviour.stages.{stage.name}.tasks.{name}.body"
             bodies = body_ids(model.mj, [wanted.body], key) if wanted.body else [0]
             for body, slot in zip(bodies, _names(model, name, wanted), strict=True):

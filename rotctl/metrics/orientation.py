@@ -1,4 +1,4 @@
-"""Orientation control in numbers, [Brown2013] section 6: how far the trunk turned, and if it rests."""
+"""Orientation control in numbers, [Brown2013] section 6: the trunk's turn, and if it rests."""
 
 import math
 from dataclasses import dataclass

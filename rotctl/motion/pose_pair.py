@@ -22,10 +22,10 @@ Angle = Finite | tuple[Finite, Finite, Finite]
 
 @validated(frozen=True, config=STRICT)
 class Poses:
-    """Key poses r_a and r_b by joint name."""
+    """Key poses r_a and r_b by joint name; without r_b there is one pose."""
 
     a: dict[str, Angle]
-    b: dict[str, Angle]
+    b: dict[str, Angle] | None = None
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> 
         coefficients=np.array(
             [
                 _coefficients(model, pose, f"{key}.{name}")
-                for pose, name in ((poses.a, "a"), (poses.b, "b"))
+                for pose, name in ((poses.a, "a"), (poses.a if poses.b is None else poses.b, "b"))
             ]
         ),
         low=model.joint_range[:, 0],
