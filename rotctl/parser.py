@@ -12,7 +12,7 @@ EPILOG = """\
 examples:
   rotctl run                                      Forward Roll 1, 20 s, into runs/<run id>/
   rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
-  rotctl run controller.weights.angular_momentum=8
+  rotctl run controller.pose.weight=0.5
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
   rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
@@ -167,7 +167,7 @@ def _parser() -> argparse.ArgumentParser:
         "show",
         help="print the composed config as YAML",
         description="Print the config that a run with these overrides gets, as YAML: every key "
-        "there can be overridden, as in: rotctl show controller.gains.pose_damping=40",
+        "there can be overridden, as in: rotctl show controller.pose.damping=40",
     )
     show.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
     show.set_defaults(command=commands.show)

@@ -4,23 +4,23 @@ import copy
 import os
 import pickle
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import mujoco
 import numpy as np
 import pytest
 from browser import Browser, executable
-from rotctl.control.targets import momentum_rates
-from rotctl.control.terms import collect
 
 from rotctl import config
 from rotctl.config import load
-from rotctl.control import Decision, Desired
+from rotctl.control import Command, Decision
 from rotctl.control.pose import PoseTracker
+from rotctl.control.stack import collect
 from rotctl.errors import InputError
 from rotctl.mechanics.state import read
 from rotctl.report import gl
 from rotctl.scenario import build
-from rotctl.simulation.loop import simulate
+from rotctl.simulation.episode import Episode
 from rotctl.sweep import points
 
 SEEDS = (1, 2)
@@ -34,7 +34,7 @@ class Step:
 
     position: np.ndarray
     velocity: np.ndarray
-    desired: Desired
+    command: Command
     blend: float
     decision: Decision
 
@@ -65,26 +65,11 @@ class World:
         self.steps = [step for seed in SEEDS for step in self._roll(seed)]
 
     def _roll(self, seed):
-        scenario = build(replace(self.config, seed=seed))
-        controller, steps = scenario.controller, []
-        decide = controller.decide
-
-        def spy(state, desired, blend):
-            decision = decide(state, desired, blend)
-            steps.append(Step(state.position, state.velocity, desired, blend, decision))
-            return decision
-
-        controller.decide = spy
-        simulate(
-            scenario.model,
-            scenario.behaviour,
-            controller,
-            scenario.stepper,
-            scenario.start,
-            SECONDS,
-            64,
-        )
-        return steps
+        moments = islice(Episode(build(replace(self.config, seed=seed))), round(SECONDS * RATE))
+        return [
+            Step(m.state.position, m.state.velocity, m.command.copy(), m.blend, m.decision)
+            for m in moments
+        ]
 
     def data(self, position, velocity, mj=None):
         """Fresh MuJoCo data in that state, evaluated as the loop does it."""
@@ -97,16 +82,13 @@ class World:
     def state(self, step):
         return read(self.model, self.data(step.position, step.velocity))
 
-    def terms(self, step, settings=None, **weights):
-        """The state of a recorded step and its first pass, with other weights if given."""
-        settings = settings or self.settings
-        settings = replace(settings, weights=replace(settings.weights, **weights))
-        state = self.state(step)
-        rates = momentum_rates(step.desired, state.momentum, self.model.mass, settings.gains)
-        tracker = PoseTracker(self.model, settings.gains, 1.0 / settings.rate)
-        torques = tracker.torques(state, np.array((step.desired.pose_a, step.desired.pose_b)))
-        keep = ~self.model.excluded[state.contacts.body]
-        return state, collect(self.model, state, settings, rates, torques, step.blend, keep)
+    def stack(self, step, command=None, settings=None):
+        """The state of a recorded step and its first pass, of another command if given."""
+        command, settings = command or step.command, settings or self.settings
+        state, poses = self.state(step), np.array((command.pose_a, command.pose_b))
+        tracker = PoseTracker(self.model, 1.0 / settings.rate)
+        torques = tracker.torques(state, poses, command.pose)
+        return state, collect(self.model, state, command, settings, torques, step.blend)
 
     def in_the_air(self, seed=0, speed=1.0):
         """A random posture and velocity, high above the ground: (qpos, qvel)."""

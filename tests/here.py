@@ -3,8 +3,8 @@
 import pytest
 
 from rotctl.cli import main
-from rotctl.sweep import engines
-from rotctl.sweep.engines import Failure, attempt
+from rotctl.sweep import workers
+from rotctl.sweep.engines import Failure, carried_out
 
 
 class Here:
@@ -25,7 +25,7 @@ class Here:
         for index, item in enumerate(items):
             self.asked += 1
             reason = self.fails.get(index)
-            yield index, Failure(reason) if reason else attempt(task, item)
+            yield index, Failure(reason) if reason else carried_out(task, item)
 
     def close(self):
         pass
@@ -34,6 +34,6 @@ class Here:
 def swept(out, *overrides):
     """Make a sweep, as the command does, but in this process."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
+        patch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
         assert main(["sweep", *overrides, "--out", str(out), "--quiet"]) == 0
     return out

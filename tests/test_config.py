@@ -11,12 +11,15 @@ import yaml
 from rotctl.config import check, load, to_dict, to_yaml
 from rotctl.errors import InputError
 
-GROUPS = "behaviour, character, controller, criteria, physics, start, terrain, seed, duration"
+GROUPS = (
+    "behaviour, character, controller, criteria, disturbance, excursion, physics, start, terrain, "
+    "seed, duration"
+)
 NOT_READ = (
     "cannot be read; write key=value, and quote a text with special characters: \"key='a text'\""
 )
 
-STARTS = "long, rest, still, symmetric, tucked, tucked_back"
+STARTS = "long, rest, standing, still, symmetric, tucked, tucked_back"
 
 
 def complaint(*overrides):
@@ -48,8 +51,8 @@ def test_the_defaults_are_those_of_the_issue():
         ("duration=1e1", "duration", 10.0),
         ("start=rest", "start.name", "rest"),
         ("controller.solver=qpsolvers:daqp", "controller.solver", "qpsolvers:daqp"),
-        ("controller.gains.linear_damping=[1,2,3]", "controller.gains.linear_damping", (1, 2, 3)),
-        ("controller.gains={pose_damping: 7}", "controller.gains.pose_damping", 7.0),
+        ("controller.tasks.linear.damping=[1,2,3]", "controller.tasks.linear.damping", (1, 2, 3)),
+        ("controller.pose={damping: 7}", "controller.pose.damping", 7.0),
         ("behaviour.poses.a.knee=[1,2,3]", "behaviour.poses.a.knee", (1, 2, 3)),
         ("+behaviour.poses.a.hip_z=0.1", "behaviour.poses.a.hip_z", 0.1),
         ("physics.disable=[]", "physics.disable", ()),
@@ -78,10 +81,9 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ("controllr=rolling", f"unknown key 'controllr'; valid keys: {GROUPS}"),
         ("behaviour@x=forward_roll_1", f"unknown key 'behaviour@x'; valid keys: {GROUPS}"),
         (
-            "controller.gains.pose_dampin=1",
-            "unknown key 'controller.gains.pose_dampin'; valid keys under controller.gains: "
-            "linear_stiffness, linear_damping, angular_stiffness, angular_damping, "
-            "pose_stiffness, pose_damping",
+            "controller.pose.dampin=1",
+            "unknown key 'controller.pose.dampin'; valid keys under controller.pose: "
+            "stiffness, damping, horizon, weight, blend",
         ),
         (
             "behaviour.reference.clip=x",
@@ -100,15 +102,15 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ("behaviour.reference={clip: x}",
          "behaviour.reference.window: missing, it cannot be left out"),
         (
-            "controller.gains.linear_damping={a: 1}",
-            'controller.gains.linear_damping={"a": 1}: must be a list, in brackets',
+            "controller.tasks.linear.damping={a: 1}",
+            'controller.tasks.linear.damping={"a": 1}: must be a list, in brackets',
         ),
         ("a." * 100 + "a=1",
          f"override '{'a.' * 28}a...': its key is longer than 200 characters"),
         (
-            "controller.gains.linear_damping.x=3",
-            "unknown key 'controller.gains.linear_damping.x'; valid keys under "
-            "controller.gains.linear_damping: none, it is a value",
+            "controller.tasks.linear.damping.x=3",
+            "unknown key 'controller.tasks.linear.damping.x'; valid keys under "
+            "controller.tasks.linear.damping: none, it is a value",
         ),
         ("~seed", "seed: missing, it cannot be left out"),
         ("seed=???", "seed: missing, give it as seed=VALUE"),
@@ -130,8 +132,8 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ("duration=inf", "duration=inf: must be a finite number"),
         ("physics.substeps=0", "physics.substeps=0: must be greater than or equal to 1"),
         (
-            "controller.gains.linear_damping=[1,2]",
-            "controller.gains.linear_damping=[1, 2]: must have 3 values",
+            "controller.tasks.linear.damping=[1,2]",
+            "controller.tasks.linear.damping=[1, 2]: must have 3 values",
         ),
         ("controller.form=foo", "controller.form=\"foo\": must be 'condensed' or 'literal'"),
         # Syntax.
@@ -181,7 +183,7 @@ def plain():
         ("seed", [1, 2], "[1, 2]: must be a valid integer"),
         ("duration", "1", '"1": must be a valid number'),
         ("duration", True, "true: must be a valid number"),
-        ("controller.gains", 3, "3: must be keys with values"),
+        ("controller.pose", 3, "3: must be keys with values"),
         ("controller.solver", 3, "3: must be a valid string"),
         ("behaviour.poses.a.knee", "x", '"x": must be a valid number'),
         ("physics.disable", "autoreset", '"autoreset": must be a list, in brackets'),
@@ -193,7 +195,7 @@ def plain():
         ("duration", -math.inf, "-inf: must be a finite number"),
         ("duration", math.nan, "nan: must be a finite number"),
         ("duration", 1e9, "1000000000.0: must be less than or equal to 3600"),
-        ("controller.weights.pose", -1, "-1: must be greater than or equal to 0"),
+        ("controller.pose.weight", -1, "-1: must be greater than or equal to 0"),
         ("terrain.friction", 0, "0: must be greater than 0"),
         ("controller.rate", math.inf, "inf: must be a finite number"),
         # Lists.
@@ -224,10 +226,10 @@ def test_a_value_that_a_check_of_our_own_names_is_not_repeated(plain):
 
 def test_a_bad_value_in_a_list_is_named_by_its_place(plain):
     data = copy.deepcopy(plain)
-    data["controller"]["gains"]["linear_damping"][2] = math.nan
+    data["controller"]["tasks"]["linear"]["damping"][2] = math.nan
     with pytest.raises(InputError) as caught:
         check(data)
-    assert str(caught.value) == "controller.gains.linear_damping[2]=nan: must be a finite number"
+    assert str(caught.value) == "controller.tasks.linear.damping[2]=nan: must be a finite number"
 
 
 @pytest.mark.parametrize(

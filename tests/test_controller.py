@@ -6,9 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
+from rotctl.behaviours.behaviour import Placement
 from rotctl.control import Controller, condensed, controller
 from rotctl.control.pose import PoseTracker
-from rotctl.control.targets import momentum_rates
+from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
 from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.state import read
@@ -59,13 +60,13 @@ def with_solvers(world, monkeypatch):
 
 
 def decide(world, chosen, step):
-    return chosen.decide(world.state(step), step.desired, step.blend)
+    return chosen.decide(world.state(step), step.command, step.blend)
 
 
 def pose_torques(world, step):
-    tracker = PoseTracker(world.model, world.settings.gains, 1.0 / world.settings.rate)
-    poses = np.array((step.desired.pose_a, step.desired.pose_b))
-    return tracker.torques(world.state(step), poses)
+    tracker = PoseTracker(world.model, 1.0 / world.settings.rate)
+    poses = np.array((step.command.pose_a, step.command.pose_b))
+    return tracker.torques(world.state(step), poses, step.command.pose)
 
 
 # ---------------------------------------------------------------- the normal case
@@ -97,33 +98,38 @@ def test_forces_and_rates_fit_together(world, steps):
 
 
 def test_rates_wanted_are_eq_3_and_4(world, steps):
-    gains, mass = world.settings.gains, world.model.mass
-    gains = replace(gains, linear_stiffness=(3.0, 5.0, 7.0))
+    gains, mass = world.settings.tasks, world.model.mass
     for step in steps[::20]:
-        momentum = world.state(step).momentum
-        desired = replace(step.desired, com=momentum.com + [0.1, -0.2, 0.3])
-        velocity = np.subtract(desired.com_velocity, momentum.com_velocity)
-        spin = desired.angular_velocity - momentum.angular_velocity
-        pull = np.diag(gains.linear_stiffness) @ [0.1, -0.2, 0.3]
-        linear = mass * (pull + np.diag(gains.linear_damping) @ velocity)
-        angular = momentum.inertia @ (
-            np.diag(gains.angular_stiffness) @ desired.excursion_error
-            + np.diag(gains.angular_damping) @ spin
+        state = world.state(step)
+        momentum = state.momentum
+        linear, spin = step.command.copy().tasks
+        linear["stiffness"] = 3.0, 5.0, 7.0
+        linear["target"][:3] = momentum.com + [0.1, -0.2, 0.3]
+        away = linear["velocity"] - momentum.com_velocity
+        pull = np.diag([3.0, 5.0, 7.0]) @ [0.1, -0.2, 0.3]
+        expected = mass * (pull + np.diag(gains["linear"].damping) @ away)
+        found = KINDS["linear"].rows(linear, world.model, state)
+        assert found.wanted == pytest.approx(expected, rel=1e-9, abs=1e-9)
+        away = spin["velocity"] - momentum.angular_velocity
+        expected = momentum.inertia @ (
+            np.diag(gains["spin"].stiffness) @ spin["target"][:3]
+            + np.diag(gains["spin"].damping) @ away
         )
-        found = momentum_rates(desired, momentum, mass, gains)
-        assert found == pytest.approx(np.r_[linear, angular], rel=1e-9, abs=1e-9)
-        wanted = momentum_rates(step.desired, momentum, mass, world.settings.gains)
-        assert step.decision.rates_wanted == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+        found = KINDS["spin"].rows(spin, world.model, state)
+        assert found.wanted == pytest.approx(expected, rel=1e-9, abs=1e-9)
+        assert step.decision.rates_wanted[3:] == pytest.approx(expected, rel=1e-9, abs=1e-9)
+        linear = KINDS["linear"].rows(step.command.tasks[0], world.model, state).wanted
+        assert step.decision.rates_wanted[:3] == pytest.approx(linear, rel=1e-9, abs=1e-9)
 
 
 def test_supervisor_as_written(world, steps):
     """Used are the candidates whose first-pass force, or moment about the CM, is large."""
     limits, dropped = world.settings.thresholds, 0
     for step in steps[::3]:
-        state, terms = world.terms(step)
+        state, stack = world.stack(step)
         candidates = ~world.model.excluded[state.contacts.body]
-        first = condensed.solve(terms, make_solver("boxqp"))
-        force = np.einsum("mij,mi->mj", state.contacts.frame[candidates], first.force)
+        first = condensed.solve(stack, make_solver("boxqp"))
+        force = np.einsum("mij,mi->mj", stack.frame, first.force)
         arms = state.contacts.position[candidates] - state.momentum.com
         size = np.linalg.norm(force, axis=1)
         moment = np.linalg.norm(np.cross(arms, force), axis=1)
@@ -133,15 +139,16 @@ def test_supervisor_as_written(world, steps):
         assert not step.decision.force[~expected].any()
         dropped += int((candidates & ~expected).sum())
         # The second pass is an optimisation over those contacts alone.
-        again = condensed.solve(terms.subset(expected[candidates]), make_solver("boxqp"))
+        again = condensed.solve(stack.subset(expected[candidates]), make_solver("boxqp"))
         assert step.decision.torque == pytest.approx(again.torque, abs=1e-2)
     assert dropped > 0
 
 
 @pytest.mark.parametrize("name", ["none", "modified"])
 def test_other_supervisors(world, supported, name):
-    chosen = Controller(world.model, replace(world.settings, supervisor=name))
+    chosen = Controller(world.model, world.settings)
     for step in supported[::15]:
+        step = replace(step, command=replace(step.command, supervisor=name))
         state, decision = world.state(step), decide(world, chosen, step)
         candidates = ~world.model.excluded[state.contacts.body]
         closing = contact_jacobian(world.mj, state.data, state.contacts)[::3] @ state.velocity < 0
@@ -154,8 +161,8 @@ def test_other_supervisors(world, supported, name):
 def head_stand(world):
     """A state on its head, in the pose of a recorded step, and that step."""
     data = mujoco.MjData(world.mj)
-    start = Start(pitch=np.pi, velocity=np.zeros(3), angular_velocity=np.zeros(3))
-    place(world.model, data, start, world.scenario.behaviour.orientation, np.zeros(world.mj.nu))
+    on_its_head = Placement(np.array([0.0, 0.0, 1.0, 0.0]), np.zeros(world.mj.nu))
+    place(world.model, data, Start(np.pi, np.zeros(3), np.zeros(3)), on_its_head, np.eye(3))
     data.qpos[2] -= 0.02
     step = replace(world.steps[0], position=data.qpos.copy(), velocity=data.qvel.copy())
     return world.state(step), step
@@ -188,11 +195,12 @@ def test_a_contact_held_out_of_control_changes_nothing(world):
             frame=contacts.frame[keep],
             row=contacts.row[keep],
             friction=contacts.friction[keep],
+            gap=contacts.gap[keep],
         ),
     )
     chosen = Controller(world.model, world.settings)
-    seen = chosen.decide(state, step.desired, 0.5)
-    unseen = chosen.decide(blind, step.desired, 0.5)
+    seen = chosen.decide(state, step.command, 0.5)
+    unseen = chosen.decide(blind, step.command, 0.5)
     assert seen.torque.tobytes() == unseen.torque.tobytes()
 
 
@@ -329,5 +337,5 @@ def test_reads_the_state_as_the_loop_does(world, steps):
     chosen = Controller(world.model, world.settings)
     for step in steps[::30]:
         state = read(world.model, world.data(step.position, step.velocity))
-        decision = chosen.decide(state, step.desired, step.blend)
+        decision = chosen.decide(state, step.command, step.blend)
         assert decision.torque.tobytes() == step.decision.torque.tobytes()

@@ -1,6 +1,6 @@
 """Which of the trunk's axes lies on the rolling axis, and how a character is put there."""
 
-from types import SimpleNamespace
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -8,8 +8,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl import scenario
-from rotctl.behaviours.rolling import FACING
+from rotctl.behaviours.facing import FACING
 from rotctl.config import load
+from rotctl.mechanics.state import read
 from rotctl.simulation.start import Start, place
 
 # World direction of the trunk's front, left and up at phase 0.
@@ -32,11 +33,14 @@ def test_a_start_turns_about_the_rolling_axis(about):
     made = scenario.build(load([f"behaviour.roll_about={about}"]))
     data = mujoco.MjData(made.model.mj)
     for pitch in (0.0, 0.7, 2.0):
-        start = Start(pitch, np.zeros(3), np.zeros(3))
-        place(made.model, data, start, made.behaviour.orientation, np.zeros(made.model.mj.nu))
+        usual = replace(made.behaviour.start(pitch), pose=np.zeros(made.model.mj.nu))
+        place(made.model, data, Start(pitch, *np.zeros((2, 3))), usual, made.behaviour.axes)
         mujoco.mj_kinematics(made.model.mj, data)
         pelvis = data.xmat[1].reshape(3, 3)
         expected = Rotation.from_euler("y", pitch).as_matrix() @ np.array(AT_PHASE_0[about]).T
         assert pelvis == pytest.approx(expected, abs=1e-12)
-        axis = made.behaviour.trunk_axis(SimpleNamespace(trunk_axes=pelvis))
+        mujoco.mj_step1(made.model.mj, data)
+        state = read(made.model, data)
+        memory = made.behaviour.begin(pitch, state)
+        axis = made.behaviour.signals(memory, state).axis
         assert axis == pytest.approx([0, 1, 0], abs=1e-12)

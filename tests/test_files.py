@@ -12,7 +12,7 @@ from here import Here
 from rotctl import files
 from rotctl.cli import main
 from rotctl.errors import InputError
-from rotctl.sweep import engines
+from rotctl.sweep import workers
 from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space
 
@@ -146,7 +146,7 @@ def test_a_folder_found_by_itself_is_no_link(folder, tmp_path):
 
 @pytest.fixture
 def cli(capsys, monkeypatch):
-    monkeypatch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
+    monkeypatch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
 
     def call(*arguments):
         code = main([str(argument) for argument in arguments])

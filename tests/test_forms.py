@@ -42,19 +42,35 @@ def reference(problem: Problem):
     return answer.x
 
 
-def literal_answer(world, terms, state, problem=None):
-    x = reference(problem or literal.assemble(terms, world.model, state))
-    nv, nu, m = world.mj.nv, world.mj.nu, terms.contacts
+def literal_answer(world, stack, state, problem=None):
+    x = reference(problem or literal.assemble(stack, world.model, state))
+    nv, nu, m = world.mj.nv, world.mj.nu, stack.contacts
     return Answer(x[nv : nv + nu], x[nv + nu : -1].reshape(m, 3), float(x[-1]), None)
 
 
-def assert_same(terms, found, expected, tolerance=TORQUE):
+def assert_same(stack, found, expected, tolerance=TORQUE):
     assert found.solution.solved, found.solution.reason
     assert np.abs(found.torque - expected.torque).max() <= tolerance
     assert found.blend == pytest.approx(expected.blend, abs=1e-4)
-    rates = terms.maps @ (found.force - expected.force).ravel()
-    scale = 1 + np.abs(terms.maps @ expected.force.ravel()).max()
+    rates = stack.maps @ (found.force - expected.force).ravel()
+    scale = 1 + np.abs(stack.maps @ expected.force.ravel()).max()
     assert np.abs(rates).max() <= 1e-4 * scale
+
+
+def weighed(command, linear=None, spin=None, contact=None, pose=None, force=None):
+    """A roll's command with other weights where they are given."""
+    command = command.copy()
+    for task, weight in zip(command.tasks, (linear, spin), strict=True):
+        if weight is not None:
+            task["weight"] = weight
+    held = {"weight": contact, "force": force}
+    held = {name: value for name, value in held.items() if value is not None}
+    tracked = {} if pose is None else {"weight": pose}
+    return replace(
+        command,
+        contact=replace(command.contact, **held),
+        pose=replace(command.pose, **tracked),
+    )
 
 
 def within_cone(force, mu, slack):
@@ -65,49 +81,45 @@ def within_cone(force, mu, slack):
 # ---------------------------------------------------------------- the literal form is eq. 2
 
 
-def dynamics(world, terms, state, torque, force):
+def dynamics(world, stack, state, torque, force):
     """qddot (nv,) from M qddot + C = S' tau + J' lambda, densely."""
     M = np.zeros((world.mj.nv, world.mj.nv))
     mujoco.mj_fullM(world.mj, state.data, M)
-    pushed = terms.jacobian.T @ force.ravel()
+    pushed = stack.jacobian.T @ force.ravel()
     pushed[6:] += torque
     return np.linalg.solve(M, pushed - state.bias)
 
 
-def paper_cost(world, terms, state, torque, force, blend):
+def paper_cost(world, stack, state, torque, force, blend):
     """Eq. 2 with its objectives written out; rates of L and H by differences, not by matrices."""
-    acceleration = dynamics(world, terms, state, torque, force)
+    acceleration = dynamics(world, stack, state, torque, force)
     rates = world.rates_by_difference(state.position, state.velocity, acceleration)
-    after = terms.jacobian @ (state.velocity + terms.period * acceleration)
-    wanted = blend * terms.pose_a + (1 - blend) * terms.pose_b
-    weights = terms.weights
-    across = weights.angular_momentum * weights.out_of_plane
-    miss = terms.rates - rates
+    after = stack.jacobian @ (state.velocity + stack.period * acceleration)
+    wanted = blend * stack.pose_a + (1 - blend) * stack.pose_b
+    miss, weight = stack.rate_wanted - rates, stack.rate_weight  # their axes are the world's
     return 0.5 * (
-        weights.linear_momentum * miss[:3] @ miss[:3]
-        + weights.angular_momentum * miss[4] ** 2
-        + across * (miss[3] ** 2 + miss[5] ** 2)
-        + weights.pose * (wanted - torque) @ (wanted - torque)
-        + weights.contact_velocity * after @ after
-        + weights.contact_force * (force**2).sum()
-        + terms.blend_weight * (blend - terms.blend) ** 2
+        weight @ miss**2
+        + stack.pose.weight * (wanted - torque) @ (wanted - torque)
+        + stack.contact.weight / stack.period**2 * after @ after
+        + stack.contact.force * (force**2).sum()
+        + stack.blend_weight * (blend - stack.blend) ** 2
     )
 
 
 def test_literal_cost_is_the_paper_s(world, supported):
     rng = np.random.default_rng(0)
     for step in supported[::8]:
-        state, terms = world.terms(step)
-        problem = literal.assemble(terms, world.model, state)
+        state, stack = world.stack(step)
+        problem = literal.assemble(stack, world.model, state)
         constant, costs, papers = None, [], []
         for _ in range(3):
             torque = 50 * rng.normal(size=world.mj.nu)
-            force = 100 * rng.normal(size=(terms.contacts, 3))
+            force = 100 * rng.normal(size=(stack.contacts, 3))
             blend = rng.uniform()
-            acceleration = dynamics(world, terms, state, torque, force)
+            acceleration = dynamics(world, stack, state, torque, force)
             x = np.concatenate((acceleration, torque, force.ravel(), [blend]))
             costs.append(problem.objective(x))
-            papers.append(paper_cost(world, terms, state, torque, force, blend))
+            papers.append(paper_cost(world, stack, state, torque, force, blend))
             rows = problem.G[: world.mj.nv] @ x - problem.low[: world.mj.nv]
             assert np.abs(rows).max() < 1e-6  # the equality is the dynamics
         constant = np.subtract(papers, costs)  # 1/2 b'Wb, the same for every x
@@ -120,8 +132,8 @@ def test_literal_momentum_matrix(world, steps):
         state = world.state(step)
         M = np.zeros((world.mj.nv, world.mj.nv))
         mujoco.mj_fullM(world.mj, state.data, M)
-        _, terms = world.terms(step)
-        (momentum, *_) = literal.objectives(terms, world.model, state, M)
+        _, stack = world.stack(step)
+        (momentum, *_) = literal.objectives(stack, world.model, state, M)
         linear, angular = np.zeros((2, 3, world.mj.nv))
         mujoco.mj_jacSubtreeCom(world.mj, state.data, linear, 1)
         mujoco.mj_angmomMat(world.mj, state.data, angular, 1)
@@ -138,19 +150,19 @@ def test_condensed_equals_literal(world, steps, solver, tolerance):
     """All recorded steps, first pass."""
     chosen = make_solver(solver)
     for step in steps:
-        state, terms = world.terms(step)
-        expected = literal_answer(world, terms, state)
-        assert_same(terms, condensed.solve(terms, chosen), expected, tolerance)
+        state, stack = world.stack(step)
+        expected = literal_answer(world, stack, state)
+        assert_same(stack, condensed.solve(stack, chosen), expected, tolerance)
 
 
 def test_condensed_equals_literal_over_kept_contacts(world, supported):
     """The second pass; `subset` must give what a fresh collection over those contacts gives."""
     rng = np.random.default_rng(0)
     for step in supported[::2]:
-        state, terms = world.terms(step)
-        terms.mobility, terms.actuation_square, terms.momentum_square, terms.momentum_pull  # noqa: B018
-        keep = rng.uniform(size=terms.contacts) < 0.6
-        part = terms.subset(keep)
+        state, stack = world.stack(step)
+        stack.mobility, stack.actuation_square, stack.momentum_square, stack.momentum_pull  # noqa: B018
+        keep = rng.uniform(size=stack.contacts) < 0.6
+        part = stack.subset(keep)
         assert part.contacts == keep.sum()
         expected = literal_answer(world, part, state)
         assert_same(part, condensed.solve(part, BoxQP()), expected)
@@ -161,32 +173,32 @@ def test_condensed_equals_literal_over_kept_contacts(world, supported):
 def test_binding_torque_limits(world, supported, share, solver, tolerance):
     binding, chosen = 0, make_solver(solver)
     for step in supported[::4]:
-        state, terms = world.terms(step)
-        terms = replace(terms, torque_limit=share * terms.torque_limit)
-        found = condensed.solve(terms, chosen)
+        state, stack = world.stack(step)
+        stack = replace(stack, torque_limit=share * stack.torque_limit)
+        found = condensed.solve(stack, chosen)
         if solver == "boxqp" and not found.solution.solved:  # it stops short now and then
-            found = condensed.solve(terms, ActiveSet())  # takes over in a run, too
-        assert (np.abs(found.torque) <= terms.torque_limit + 1e-5).all()
-        assert_same(terms, found, literal_answer(world, terms, state), tolerance)
-        binding += int((np.abs(found.torque) >= terms.torque_limit - 1e-6).any())
+            found = condensed.solve(stack, ActiveSet())  # takes over in a run, too
+        assert (np.abs(found.torque) <= stack.torque_limit + 1e-5).all()
+        assert_same(stack, found, literal_answer(world, stack, state), tolerance)
+        binding += int((np.abs(found.torque) >= stack.torque_limit - 1e-6).any())
     assert binding >= 10
 
 
 def test_literal_solve_reads_the_solution_in_order(world, supported):
     solver = make_solver("qpsolvers:daqp")
     for step in supported[::10]:
-        state, terms = world.terms(step)
-        found = literal.solve(terms, world.model, state, solver)
-        assert_same(terms, found, literal_answer(world, terms, state))
+        state, stack = world.stack(step)
+        found = literal.solve(stack, world.model, state, solver)
+        assert_same(stack, found, literal_answer(world, stack, state))
 
 
 def test_forces_stay_in_the_friction_pyramid(world, supported):
     """With a slippery ground in mind the pyramid binds, and its four sides all occur."""
     sides = np.zeros((2, 2), dtype=bool)
     for step in supported:
-        _, terms = world.terms(step)
-        terms = replace(terms, friction=0.2)
-        force = condensed.solve(terms, BoxQP()).force
+        _, stack = world.stack(step)
+        stack = replace(stack, friction=0.2)
+        force = condensed.solve(stack, BoxQP()).force
         assert within_cone(force, 0.2, 1e-6 * (1 + np.abs(force).max()))
         pressed = force[force[:, 0] > 10.0]
         limit = 0.2 * pressed[:, :1] * (1 - 1e-6)
@@ -200,28 +212,28 @@ def test_forces_stay_in_the_friction_pyramid(world, supported):
 def test_without_contacts_the_blend_is_tracked(world):
     position, velocity = world.in_the_air(1)
     step = replace(world.steps[10], position=position, velocity=velocity, blend=0.3)
-    state, terms = world.terms(step)
-    found = condensed.solve(terms, BoxQP())
-    assert terms.contacts == 0
+    state, stack = world.stack(step)
+    found = condensed.solve(stack, BoxQP())
+    assert stack.contacts == 0
     assert found.force.shape == (0, 3)
-    wide = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
+    wide = replace(stack, torque_limit=np.full(world.mj.nu, 1e6))
     free = condensed.solve(wide, BoxQP())
     assert free.blend == pytest.approx(0.3, abs=1e-6)
-    assert free.torque == pytest.approx(0.3 * terms.pose_a + 0.7 * terms.pose_b, abs=1e-3)
-    tight = replace(terms, torque_limit=np.full(world.mj.nu, 1.0))
+    assert free.torque == pytest.approx(0.3 * stack.pose_a + 0.7 * stack.pose_b, abs=1e-3)
+    tight = replace(stack, torque_limit=np.full(world.mj.nu, 1.0))
     assert_same(tight, condensed.solve(tight, BoxQP()), literal_answer(world, tight, state))
 
 
 # ---------------------------------------------------------------- weights
 
 
-def without(world, terms, state, index, rows=slice(None)):
+def without(world, stack, state, index, rows=slice(None)):
     """The literal problem with objective `index` (or some of its rows) left out."""
     M = np.zeros((world.mj.nv, world.mj.nv))
     mujoco.mj_fullM(world.mj, state.data, M)
-    problem = literal.assemble(terms, world.model, state)
+    problem = literal.assemble(stack, world.model, state)
     H, f = np.zeros_like(problem.H), np.zeros_like(problem.f)
-    for i, objective in enumerate(literal.objectives(terms, world.model, state, M)):
+    for i, objective in enumerate(literal.objectives(stack, world.model, state, M)):
         keep = np.ones(len(objective.b), dtype=bool)
         if i == index:
             keep[rows] = False
@@ -234,28 +246,28 @@ def without(world, terms, state, index, rows=slice(None)):
 @pytest.mark.parametrize(
     ("weights", "index", "rows"),
     [
-        ({"linear_momentum": 0.0}, 0, [0, 1, 2]),
-        ({"angular_momentum": 0.0}, 0, [3, 4, 5]),
-        ({"out_of_plane": 0.0}, 0, [3, 5]),
-        ({"contact_velocity": 0.0}, 2, slice(None)),
+        ({"linear": 0.0}, 0, [0, 1, 2]),
+        ({"spin": 0.0}, 0, [3, 4, 5]),
+        ({"spin": [0.0, 3.3, 0.0]}, 0, [3, 5]),
+        ({"contact": 0.0}, 1, slice(None)),
     ],
 )
 def test_zero_weight_equals_absent(world, supported, weights, index, rows):
     for step in supported[::12]:
-        state, full = world.terms(step)
-        _, terms = world.terms(step, **weights)
+        state, full = world.stack(step)
+        _, stack = world.stack(step, weighed(step.command, **weights))
         absent = without(world, full, state, index, rows)
-        found = condensed.solve(terms, BoxQP())
-        assert_same(terms, found, literal_answer(world, terms, state, absent))
+        found = condensed.solve(stack, BoxQP())
+        assert_same(stack, found, literal_answer(world, stack, state, absent))
 
 
-def test_zero_contact_velocity_leaves_the_pose_torques(world, supported):
+def test_zero_contact_weight_leaves_the_pose_torques(world, supported):
     """Nothing then ties the torques to the contact forces."""
     for step in supported[::12]:
-        _, terms = world.terms(step, contact_velocity=0.0)
-        terms = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
-        found = condensed.solve(terms, BoxQP())
-        expected = found.blend * terms.pose_a + (1 - found.blend) * terms.pose_b
+        _, stack = world.stack(step, weighed(step.command, contact=0.0))
+        stack = replace(stack, torque_limit=np.full(world.mj.nu, 1e6))
+        found = condensed.solve(stack, BoxQP())
+        expected = found.blend * stack.pose_a + (1 - found.blend) * stack.pose_b
         assert found.torque == pytest.approx(expected, abs=1e-6)
 
 
@@ -263,32 +275,34 @@ def test_zero_pose_weight_ignores_the_poses(world, supported):
     """Torques are then not unique, and boxqp may say so; it must not fail often."""
     solved, tried = 0, supported[::6]
     for step in tried:
-        _, terms = world.terms(step, pose=0.0)
-        other = replace(terms, pose_a=terms.pose_b + 50.0, pose_b=terms.pose_a)
-        found, again = condensed.solve(terms, BoxQP()), condensed.solve(other, BoxQP())
+        _, stack = world.stack(step, weighed(step.command, pose=0.0))
+        other = replace(stack, pose_a=stack.pose_b + 50.0, pose_b=stack.pose_a)
+        found, again = condensed.solve(stack, BoxQP()), condensed.solve(other, BoxQP())
         assert found.torque.tolist() == again.torque.tolist()
-        assert (np.abs(found.torque) <= terms.torque_limit + 1e-6).all()
+        assert (np.abs(found.torque) <= stack.torque_limit + 1e-6).all()
         if found.solution.solved:
             solved += 1
-            assert found.blend == pytest.approx(terms.blend, abs=1e-4)
+            assert found.blend == pytest.approx(stack.blend, abs=1e-4)
     assert solved >= 0.8 * len(tried)
 
 
 def test_zero_pose_weight_without_contacts(world):
     position, velocity = world.in_the_air(2)
-    _, terms = world.terms(replace(world.steps[0], position=position, velocity=velocity), pose=0.0)
-    found = condensed.solve(terms, BoxQP())
+    command = weighed(world.steps[0].command, pose=0.0)
+    step = replace(world.steps[0], position=position, velocity=velocity, command=command)
+    _, stack = world.stack(step)
+    found = condensed.solve(stack, BoxQP())
     assert found.solution.solved
     assert np.abs(found.torque).max() < 1e-6
 
 
 def test_everything_off_but_the_pose(world, supported):
     step = supported[3]
-    _, terms = world.terms(step, linear_momentum=0.0, angular_momentum=0.0, contact_velocity=0.0)
-    terms = replace(terms, torque_limit=np.full(world.mj.nu, 1e6))
-    found = condensed.solve(terms, BoxQP())
+    _, stack = world.stack(step, weighed(step.command, linear=0.0, spin=0.0, contact=0.0))
+    stack = replace(stack, torque_limit=np.full(world.mj.nu, 1e6))
+    found = condensed.solve(stack, BoxQP())
     assert np.abs(found.force).max() < 1e-6
-    expected = terms.blend * terms.pose_a + (1 - terms.blend) * terms.pose_b
+    expected = stack.blend * stack.pose_a + (1 - stack.blend) * stack.pose_b
     assert found.torque == pytest.approx(expected, abs=1e-3)
 
 
@@ -299,38 +313,39 @@ def test_a_target_that_is_met_is_kept(world, supported):
     """Poses, momentum rates and still contacts that fit together cost nothing at all."""
     tried = 0
     for step in supported[::6]:
-        state, terms = world.terms(step, contact_force=1e-9)
-        m = terms.contacts
+        state, stack = world.stack(step, weighed(step.command, force=1e-9))
+        m = stack.contacts
         if m > 4:
             continue  # more contact rows than torques can serve
         force = np.tile([150.0, 20.0, -10.0], (m, 1))
-        still = -(terms.mobility @ force.ravel() + terms.drift)
-        torque = np.linalg.lstsq(terms.actuation, still, rcond=None)[0]
-        if np.abs(terms.actuation @ torque - still).max() > 1e-6:
+        still = -(stack.mobility @ force.ravel() + stack.drift)
+        torque = np.linalg.lstsq(stack.actuation, still, rcond=None)[0]
+        if np.abs(stack.actuation @ torque - still).max() > 1e-6:
             continue
         tried += 1
-        terms = replace(
-            terms,
-            rates=terms.maps @ force.ravel() + terms.weight,
+        stack = replace(
+            stack,
+            rate_wanted=stack.maps @ force.ravel() + stack.gravity,
             pose_a=torque,
             pose_b=torque,
             torque_limit=np.full(world.mj.nu, 2 * np.abs(torque).max()),
         )
-        found = condensed.solve(terms, BoxQP())
+        found = condensed.solve(stack, BoxQP())
         scale = 1 + np.abs(torque).max()
         assert found.torque == pytest.approx(torque, abs=1e-4 * scale)
-        predicted = terms.maps @ found.force.ravel() + terms.weight
-        assert predicted == pytest.approx(terms.rates, abs=1e-3 * (1 + np.abs(terms.rates).max()))
-        assert found.blend == pytest.approx(terms.blend, abs=1e-4)
-        cost = paper_cost(world, terms, state, found.torque, found.force, found.blend)
-        assert cost < 1e-4 * terms.weights.pose * torque @ torque
+        predicted = stack.maps @ found.force.ravel() + stack.gravity
+        wanted = stack.rate_wanted
+        assert predicted == pytest.approx(wanted, abs=1e-3 * (1 + np.abs(wanted).max()))
+        assert found.blend == pytest.approx(stack.blend, abs=1e-4)
+        cost = paper_cost(world, stack, state, found.torque, found.force, found.blend)
+        assert cost < 1e-4 * stack.pose.weight * torque @ torque
     assert tried >= 3
 
 
 def test_predicted_rates_come_true(world, supported):
     """Obey the torques and forces: L and H then change as the controller said."""
     for step in supported[::6]:
-        state, _ = world.terms(step)
+        state, _ = world.stack(step)
         force = step.decision.force.ravel()
         frames = state.contacts.frame
         along = np.einsum("mij,mj->mi", frames, force.reshape(-1, 3))
@@ -346,7 +361,7 @@ def test_predicted_rates_come_true(world, supported):
 
 def test_mu_of_the_controller_is_used(world, supported):
     settings: ControllerSettings = replace(world.settings, friction=0.05)
-    _, terms = world.terms(supported[0], settings)
-    assert terms.friction == 0.05
-    force = condensed.solve(terms, BoxQP()).force
+    _, stack = world.stack(supported[0], settings=settings)
+    assert stack.friction == 0.05
+    force = condensed.solve(stack, BoxQP()).force
     assert within_cone(force, 0.05, 1e-6 * (1 + np.abs(force).max()))

@@ -56,7 +56,7 @@ def test_forces_in_the_log_explain_the_momentum():
 
 def test_without_the_pose_objective_it_does_not_roll():
     """A test that can fail: the measures tell a limp body from a roll."""
-    summary, _ = roll("controller.gains.pose_stiffness=0", "duration=6")
+    summary, _ = roll("controller.pose.stiffness=0", "duration=6")
     assert not summary["success"]
     assert summary["failure_reason"].startswith("stalled for ")
 

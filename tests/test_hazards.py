@@ -15,7 +15,7 @@ from rotctl.mechanics.state import read
 from rotctl.report import shapes, stored_model
 from rotctl.run import LOG_NAME, run
 from rotctl.scenario import build
-from rotctl.simulation.start import place
+from rotctl.simulation.episode import Episode
 
 
 def made(*overrides):
@@ -25,9 +25,7 @@ def made(*overrides):
 def among_boxes(scenario, seed=0):
     """Data of a tucked character that moves, with half of the boxes thrown at it."""
     mj, rng = scenario.model.mj, np.random.default_rng(seed)
-    data = mujoco.MjData(mj)
-    behaviour = scenario.behaviour
-    place(scenario.model, data, scenario.start, behaviour.orientation, behaviour.pose(0.0))
+    data = Episode(scenario).data
     boxes = np.arange(scenario.model.angles.stop, mj.nq, 7)
     for box in boxes[::2]:
         data.qpos[box : box + 3] = data.qpos[:3] + rng.normal(scale=0.25, size=3) * [1, 1, 0.3]
@@ -118,14 +116,9 @@ def test_boxes_out_of_reach_change_nothing(backend):
     for terrain in ("flat", "hazards"):
         one = build(load([f"terrain={terrain}", f"controller.backend={backend}", "seed=2"]))
         assert one.controller.backend == backend
-        data = mujoco.MjData(one.model.mj)
-        behaviour = one.behaviour
-        place(one.model, data, one.start, behaviour.orientation, behaviour.pose(one.start.pitch))
-        data.qpos[2] -= 1e-3  # onto the ground, not just to it
-        one.stepper.evaluate(data)
-        state = one.controller.read(data)
-        now = behaviour.advance(behaviour.begin(one.start.pitch), state)
-        decided.append(one.controller.decide(state, behaviour.desired(state, now), 0.5))
+        episode = Episode(one)
+        episode.data.qpos[2] -= 1e-3  # onto the ground, not just to it
+        decided.append(next(iter(episode)).decision)
     assert len(decided[0].used) > 0
     assert decided[0].torque == pytest.approx(decided[1].torque, rel=1e-7, abs=1e-7)
     assert decided[0].force == pytest.approx(decided[1].force, rel=1e-6, abs=1e-6)
@@ -134,13 +127,13 @@ def test_boxes_out_of_reach_change_nothing(backend):
 def test_the_literal_form_agrees_among_boxes(scenario, hit):
     """Eq. 2 as written, accelerations of the boxes included, gives the condensed form's torques."""
     settings = scenario.config.controller
-    tight = replace(settings, backend="reference", solver="qpsolvers:daqp", supervisor="none")
+    tight = replace(settings, backend="reference", solver="qpsolvers:daqp")
     state = read(scenario.model, hit)
-    now = scenario.behaviour.begin(0.0)
-    desired = scenario.behaviour.desired(state, now)
-    condensed = Controller(scenario.model, tight).decide(state, desired, 0.5)
+    command = scenario.behaviour.command(scenario.behaviour.begin(0.0, state), state)
+    command = replace(command, supervisor="none")
+    condensed = Controller(scenario.model, tight).decide(state, command, 0.5)
     literal = Controller(scenario.model, replace(tight, form="literal"))
-    written = literal.decide(state, desired, 0.5)
+    written = literal.decide(state, command, 0.5)
     assert written.fallback == condensed.fallback == 0
     assert written.torque == pytest.approx(condensed.torque, abs=1e-2)
 

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import mujoco
 import numpy as np
 import pytest
+from both import along
 
 from rotctl.config import load
 from rotctl.control import Controller, compiled
@@ -343,25 +344,20 @@ def test_control_sees_contacts_that_touch_or_close(world, settings, supported):
         seen += sum(gap > settings.touch for gap in expected)
         touching = read_contacts(model.mj, data, settings.touch)
         assert (touching.gap <= settings.touch).all()
-    assert min(seen, left) > 20
+    assert min(seen, left) > 10
 
 
 @pytest.mark.parametrize("form", ["condensed", "literal"])
 def test_the_controller_meets_a_closing_contact_at_the_surface(world, settings, supported, form):
     """With contact velocities all that counts, the dynamics take each normal to -gap / h."""
     met = 0
-    wishes = replace(world.settings.weights, contact_velocity=1e9, contact_force=1e-9)
-    control = replace(
-        world.settings,
-        weights=wishes,
-        supervisor="none",
-        form=form,
-        solver="qpsolvers:daqp",
-    )
+    hold = replace(world.settings.contact, weight=1e9 / 60**2, force=1e-9)
+    control = replace(world.settings, form=form, solver="qpsolvers:daqp")
     for step, model, data in closing_states(world, settings, supported):
         controller = Controller(model, control)
         state = controller.read(data)
-        decision = controller.decide(state, step.desired, step.blend)
+        command = replace(step.command, contact=hold, supervisor="none")
+        decision = controller.decide(state, command, step.blend)
         used = replace(
             state.contacts, **{k: v[decision.used] for k, v in vars(state.contacts).items()}
         )
@@ -385,32 +381,17 @@ def test_the_controller_meets_a_closing_contact_at_the_surface(world, settings, 
 
 @pytest.mark.skipif(compiled.library() is None, reason="the compiled control step is not built")
 def test_compiled_control_is_the_reference_here_too():
-    scenario = build(load(["physics=lockstep", "seed=1", "duration=2.5"]))
-    control, model = scenario.controller.settings, scenario.model
-    slow = Controller(model, replace(control, backend="reference"))
-    fast = Controller(model, replace(control, backend="compiled"))
-    assert (fast.backend, slow.backend) == ("compiled", "reference")
+    scenario = build(load(["physics=lockstep", "seed=1"]))
     open_contacts = []
-
-    class Both:
-        settings = control
-
-        def read(self, data):
-            self.found, self.expected = fast.read(data), slow.read(data)
-            for name in vars(self.expected.contacts):
-                a, b = (getattr(s.contacts, name).tolist() for s in (self.found, self.expected))
-                assert a == b
-            open_contacts.append((self.expected.contacts.gap > 0.002).sum())
-            return self.expected
-
-        def decide(self, state, desired, blend):
-            a, b = fast.decide(self.found, desired, blend), slow.decide(state, desired, blend)
-            assert np.abs(a.torque - b.torque).max() <= 1e-6 * np.abs(b.torque).max()
-            assert a.used.tolist() == b.used.tolist()
-            assert a.force == pytest.approx(b.force, rel=1e-6, abs=1e-4)
-            return b
-
-    in_memory(replace(scenario, controller=Both()))
+    for asked in along(scenario, 150):
+        for name in vars(asked.expected.contacts):
+            a, b = (getattr(s.contacts, name).tolist() for s in (asked.found, asked.expected))
+            assert a == b
+        open_contacts.append((asked.expected.contacts.gap > 0.002).sum())
+        fast, slow = asked.fast, asked.slow
+        assert np.abs(fast.torque - slow.torque).max() <= 1e-6 * np.abs(slow.torque).max()
+        assert fast.used.tolist() == slow.used.tolist()
+        assert fast.force == pytest.approx(slow.force, rel=1e-6, abs=1e-4)
     assert len(open_contacts) == 150
     assert sum(open_contacts) > 10
 
@@ -469,7 +450,7 @@ def test_it_rolls(tmp_path):
     overrides = ["physics=lockstep", "behaviour=forward_roll_1_phase", "seed=2", "duration=5"]
     result = run(load(overrides), tmp_path)
     assert result.summary["revolutions"] > 2
-    attributes = read_attributes(result.folder / "run.h5")
+    attributes = read_attributes(result.folder / "run.h5", linked=False)
     kind = "compiled" if pgs.library() else "reference"
     assert json.loads(attributes["versions"])["physics_step"] == f"lockstep {kind}"
 
@@ -484,9 +465,12 @@ def test_a_solve_that_stops_short_is_an_event():
 def test_without_the_library_it_says_so_and_gives_the_same(monkeypatch):
     overrides = ["physics=lockstep", "seed=1", "duration=0.3"]
     usual, _ = in_memory(build(load(overrides)))
-    monkeypatch.setattr(pgs, "library", lambda: None)
+    monkeypatch.setattr(lockstep, "library", lambda: None)
     scenario = build(load(overrides))
-    assert scenario.stepper.notice == lockstep.NOT_BUILT
+    assert scenario.stepper.notice == (
+        "the compiled contact solver is not built, using its numpy reference, which is much "
+        "slower; install a C compiler (Debian: apt-get install gcc libc6-dev), then rotctl again"
+    )
     assert scenario.stepper.backend == "lockstep reference"
     buffer, _ = in_memory(scenario)
     assert buffer.trajectory.qpos == pytest.approx(usual.trajectory.qpos, abs=1e-8)
@@ -502,7 +486,7 @@ def test_a_blow_up_is_a_complaint(world, settings):
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("physics.stepper=x", "physics.stepper=x: no such stepper; valid: 'mujoco', 'lockstep'"),
+        ("physics.stepper=x", "physics.stepper=\"x\": no such stepper; valid: 'mujoco', 'lockstep'"),
         ("physics.sweeps=0", "physics.sweeps=0: must be greater than or equal to 1"),
         ("physics.margin=0", "physics.margin=0: must be greater than 0"),
         (

@@ -8,7 +8,7 @@ import pytest
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, TrajectoryBuffer
 
-SIZES = {"steps": 7, "nq": 5, "nv": 4, "nu": 3, "capacity": 2}
+SIZES = {"steps": 7, "nq": 5, "nv": 4, "nu": 3, "capacity": 2, "tasks": 2, "bodies": 2}
 
 
 def test_every_array_has_the_schema_s_type_and_shape():

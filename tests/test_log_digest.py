@@ -12,7 +12,7 @@ ATTRIBUTE_VALUES = {name: PLAIN[kind] for name, kind in ATTRIBUTES.items()}
 
 
 def arrays():
-    buffer = TrajectoryBuffer.allocate(steps=2, nq=3, nv=3, nu=3, capacity=1)
+    buffer = TrajectoryBuffer.allocate(steps=2, nq=3, nv=3, nu=3, capacity=1, tasks=2, bodies=2)
     buffer.add_event(0.0, "start")
     return {**buffer.arrays(), "model/mjcf": np.array(b"<mujoco/>")}
 

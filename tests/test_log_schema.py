@@ -13,7 +13,7 @@ from rotctl.log.schema import (
     check_layout,
 )
 
-SIZES = {"steps": 5, "nq": 4, "nv": 3, "nu": 2, "capacity": 6, "events": 1}
+SIZES = {"steps": 5, "nq": 4, "nv": 3, "nu": 2, "capacity": 6, "tasks": 7, "bodies": 8, "events": 1}
 
 
 def layout(**changes):
@@ -35,7 +35,9 @@ def test_every_dataset_has_a_unit_and_a_one_line_description():
 
 
 def test_groups_and_writer_attributes_are_part_of_the_schema():
-    assert GROUPS == ("trajectory", "contacts", "solver", "events", "model")
+    assert GROUPS == (
+        *("trajectory", "command", "contacts", "disturbance", "solver", "events", "model"),
+    )
     assert set(WRITER_ATTRIBUTES) < set(ATTRIBUTES)
 
 

@@ -190,7 +190,7 @@ def added(name):
         ),
         (attribute("schema_version", 4), "schema version 4, this rotctl reads 2 to 3"),
         (attribute("schema_version", 1), "schema version 1, this rotctl reads 2 to 3"),
-        (attribute("schema_version", 2), "unknown dataset 'contacts/force_peak'"),
+        (attribute("schema_version", 2), "unknown dataset 'command/axes'"),
         (without("complete"), "incomplete, the run was cut off while it was written"),
         (attribute("complete", False), "incomplete, the run was cut off while it was written"),
         (without("seed"), "missing attribute 'seed'"),

@@ -31,7 +31,7 @@ ATTRIBUTES = {
 
 def buffer(steps=40):
     """A run whose every array has something in it."""
-    run = TrajectoryBuffer.allocate(steps=steps, nq=9, nv=8, nu=2, capacity=4)
+    run = TrajectoryBuffer.allocate(steps=steps, nq=9, nv=8, nu=2, capacity=4, tasks=2, bodies=2)
     rng = np.random.default_rng(0)
     for array in run.arrays().values():
         array[...] = rng.integers(0, 2, array.shape)
@@ -66,7 +66,7 @@ def test_round_trip(tmp_path):
 
 
 def test_a_run_may_be_a_mapping_and_may_be_empty(tmp_path):
-    run = TrajectoryBuffer.allocate(steps=0, nq=9, nv=8, nu=0, capacity=0)
+    run = TrajectoryBuffer.allocate(steps=0, nq=9, nv=8, nu=0, capacity=0, tasks=0, bodies=1)
     write(tmp_path / "run.h5", run.arrays(), wall_time=np.int64(2))
     log = RunLog.open(tmp_path / "run.h5")
     log.verify()
@@ -105,7 +105,7 @@ def test_every_dataset_has_unit_description_and_checksum(tmp_path):
 
 
 def test_chunks_are_whole_rows_of_about_a_mebibyte(tmp_path):
-    run = TrajectoryBuffer.allocate(steps=3000, nq=100, nv=8, nu=2, capacity=4)
+    run = TrajectoryBuffer.allocate(steps=3000, nq=100, nv=8, nu=2, capacity=4, tasks=2, bodies=2)
     write(tmp_path / "run.h5", run)
     with h5py.File(tmp_path / "run.h5") as file:
         assert file["trajectory/qpos"].chunks == (1310, 100)

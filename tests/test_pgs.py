@@ -144,15 +144,6 @@ def test_compiled_is_the_reference_on_a_roll():
     assert (max(rows) > 30, max(sweeps) > 50, all(friction)) == (True, True, True)
 
 
-def test_a_library_of_other_source_is_refused(monkeypatch):
-    monkeypatch.setattr(pgs, "INTERFACE", -1)
-    pgs.library.cache_clear()
-    try:
-        assert pgs.library() is None
-    finally:
-        pgs.library.cache_clear()
-
-
 @needs_library
 def test_a_bound_that_follows_slowly_ends_the_cycles_of_the_plain_method():
     """States of a roll: some never converge with bounds at mu p_n, all do with these."""

@@ -15,21 +15,21 @@ PERIOD = 1.0 / 60.0
 
 @pytest.fixture(scope="module")
 def gains(world):
-    return replace(world.settings.gains, pose_stiffness=600.0, pose_damping=40.0)
+    return replace(world.settings.pose, stiffness=600.0, damping=40.0, horizon=0.0)
 
 
 @pytest.fixture(scope="module")
-def tracker(world, gains):
-    return PoseTracker(world.model, gains, PERIOD)
+def tracker(world):
+    return PoseTracker(world.model, PERIOD)
 
 
-def dense_torques(world, state, gains, pose):
+def dense_torques(world, state, gains, pose, h=PERIOD):
     """tau = Kp (pose - q - h qd) - Kd (qd + h qdd), qdd the answer to that same tau."""
-    nv, h = world.mj.nv, PERIOD
+    nv = world.mj.nv
     M = np.zeros((nv, nv))
     mujoco.mj_fullM(world.mj, state.data, M)
     inertia = np.diag(M)[6:] - world.mj.dof_armature[6:]
-    Kp, Kd = gains.pose_stiffness * inertia, gains.pose_damping * inertia
+    Kp, Kd = gains.stiffness * inertia, gains.damping * inertia
     q, qd = state.position[7:], state.velocity[6:]
     # Unknowns [qdd (nv), tau (nu)]; M qdd - S' tau = -C ; h Kd qdd_joints + tau = known.
     nu = nv - 6
@@ -43,41 +43,44 @@ def dense_torques(world, state, gains, pose):
     return np.linalg.solve(system, np.concatenate((-C, known)))[nv:]
 
 
-def test_equals_the_implicit_formula(world, steps, tracker, gains):
+@pytest.mark.parametrize(
+    ("horizon", "ahead"), [(0.0, PERIOD), (0.5 * PERIOD, PERIOD), (3.0 * PERIOD, 3.0 * PERIOD)]
+)
+def test_equals_the_implicit_formula(world, steps, tracker, gains, horizon, ahead):
+    """At the end of the horizon, but never nearer than the end of the control period."""
     for step in steps[::8]:
         state = world.state(step)
-        poses = np.array((step.desired.pose_a, step.desired.pose_b))
-        found = tracker.torques(state, poses)
+        poses = np.array((step.command.pose_a, step.command.pose_b))
+        found = tracker.torques(state, poses, replace(gains, horizon=horizon))
         for torque, pose in zip(found, poses, strict=True):
-            expected = dense_torques(world, state, gains, pose)
+            expected = dense_torques(world, state, gains, pose, ahead)
             assert torque == pytest.approx(expected, abs=1e-8 * (1 + np.abs(expected).max()))
 
 
-def test_linear_in_the_pose(world, steps, tracker):
+def test_linear_in_the_pose(world, steps, tracker, gains):
     """The blend of eq. 7: the torque towards a blended pose is the blend of the torques."""
     for step in steps[::20]:
-        a, b = step.desired.pose_a, step.desired.pose_b
+        a, b = step.command.pose_a, step.command.pose_b
         assert np.abs(a - b).max() > 0.1
         gamma = np.array([0.0, 0.25, 0.6, 1.0])[:, None]
-        found = tracker.torques(world.state(step), gamma * a + (1 - gamma) * b)
+        found = tracker.torques(world.state(step), gamma * a + (1 - gamma) * b, gains)
         expected = gamma * found[3] + (1 - gamma) * found[0]
         assert np.abs(found - expected).max() < 1e-8 * (1 + np.abs(expected).max())
 
 
-def test_no_gains_no_torque(world, steps):
-    nothing = replace(world.settings.gains, pose_stiffness=0.0, pose_damping=0.0)
-    tracker = PoseTracker(world.model, nothing, PERIOD)
-    torque = tracker.torques(world.state(steps[9]), steps[9].desired.pose_a[None])
+def test_no_gains_no_torque(world, steps, tracker, gains):
+    nothing = replace(gains, stiffness=0.0, damping=0.0)
+    torque = tracker.torques(world.state(steps[9]), steps[9].command.pose_a[None], nothing)
     assert not torque.any()
 
 
-def test_state_is_left_alone_and_calls_are_independent(world, steps, tracker):
+def test_state_is_left_alone_and_calls_are_independent(world, steps, tracker, gains):
     state, other = world.state(steps[5]), world.state(steps[60])
-    poses = steps[5].desired.pose_a[None]
+    poses = steps[5].command.pose_a[None]
     before = state.data.M.copy(), state.data.qLD.copy(), state.bias.copy()
-    first = tracker.torques(state, poses)
-    tracker.torques(other, poses)
-    assert np.array_equal(tracker.torques(state, poses), first)
+    first = tracker.torques(state, poses, gains)
+    tracker.torques(other, poses, gains)
+    assert np.array_equal(tracker.torques(state, poses, gains), first)
     assert all(
         np.array_equal(x, y)
         for x, y in zip(before, (state.data.M, state.data.qLD, state.bias), strict=True)
@@ -109,14 +112,17 @@ def hold(model, control, seconds=2.0):
 
 
 def test_stable_at_60_hz_where_explicit_pd_is_not(floating, gains):
-    tracker = PoseTracker(floating, gains, PERIOD)
+    tracker = PoseTracker(floating, PERIOD)
 
     def explicit(state, pose):
         inertia = state.data.M[floating.diagonal[6:]] - floating.armature
         error = pose - state.position[7:]
-        return inertia * (gains.pose_stiffness * error - gains.pose_damping * state.velocity[6:])
+        return inertia * (gains.stiffness * error - gains.damping * state.velocity[6:])
 
-    error, fastest = hold(floating, lambda state, pose: tracker.torques(state, pose[None])[0])
+    def stable(state, pose):
+        return tracker.torques(state, pose[None], gains)[0]
+
+    error, fastest = hold(floating, stable)
     assert error < 0.02
     assert fastest < 20.0
     error, fastest = hold(floating, explicit)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rotctl.behaviours.facing import FACING
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.rolling import failure_reason, measure
@@ -101,7 +102,8 @@ def test_the_phase_keeps_to_the_trunk(row):
     scenario = build(load([f"behaviour={row}", "duration=10"]))
     model, buffer = scenario.model, in_memory(scenario)[0]
     data = mujoco.MjData(model.mj)
-    upright = Rotation.from_quat(scenario.behaviour.orientation, scalar_first=True)
+    facing = FACING[scenario.config.behaviour.roll_about]
+    upright = Rotation.from_quat(facing.orientation, scalar_first=True)
     missing = []
     for position, phase in zip(
         buffer.trajectory.qpos[-200:], buffer.trajectory.phase[-200:], strict=True

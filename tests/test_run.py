@@ -53,8 +53,8 @@ EXPLOSIVE = [
     "character.joint_damping=0",
     "character.joint_armature=0",
     "physics.substeps=1",
-    "controller.gains.pose_stiffness=1e7",
-    "controller.gains.pose_damping=1e5",
+    "controller.pose.stiffness=1e7",
+    "controller.pose.damping=1e5",
 ]
 NEVER_STARTS = ["duration=0.5", "start.speed_x=[1e12,1e12]"]
 

@@ -30,7 +30,7 @@ def test_whatever_changes_the_run_changes_its_id():
             ["start=rest"],
             ["physics.substeps=5"],
             ["controller.solver=osqp"],
-            ["controller.gains.pose_damping=1"],
+            ["controller.pose.damping=1"],
             ["character.mass=71"],
             ["behaviour.poses.a.hip_x=0.21"],
         )

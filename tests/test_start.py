@@ -8,11 +8,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl import scenario
+from rotctl.behaviours.behaviour import Placement
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.model import lowest_and_highest
+from rotctl.rotations import advance
 from rotctl.run import in_memory
-from rotctl.simulation.start import Posture, Start, StartSettings, draw, place
+from rotctl.simulation.episode import Episode
+from rotctl.simulation.start import SINK, Posture, Start, StartSettings, draw, place
 
 STARTS = [
     Start(-0.4, np.array([1.1, -0.2, 0.0]), np.array([0.5, 6.0, -0.7])),
@@ -20,6 +23,7 @@ STARTS = [
     Start(0.0, np.zeros(3), np.zeros(3)),
 ]
 UPRIGHT = np.array([1.0, 0.0, 0.0, 0.0])
+WAYS = np.eye(3)  # forward, left and up
 RANGES = StartSettings(
     name="test",
     pitch=(-0.6, 0.0),
@@ -38,8 +42,10 @@ def placed(request, world):
     pose = np.random.default_rng(request.param).uniform(low, high)
     data = mujoco.MjData(world.mj)
     data.qpos[:], data.qvel[:], data.time = 7.0, 7.0, 3.0  # leftovers of another run
-    place(world.model, data, STARTS[request.param], UPRIGHT, pose)
-    return STARTS[request.param], pose, data
+    start = STARTS[request.param]
+    usual = Placement(advance(UPRIGHT, start.pitch * WAYS[1]), pose)
+    place(world.model, data, start, usual, WAYS)
+    return start, pose, data
 
 
 def test_the_lowest_point_is_on_the_ground(world, placed):
@@ -52,9 +58,9 @@ def test_the_lowest_point_is_on_the_ground(world, placed):
         for geom in range(world.mj.ngeom)
         if world.mj.geom_bodyid[geom] > 0 and world.mj.geom_contype[geom] > 0
     ]
-    assert min(gaps) == pytest.approx(0.0, abs=1e-6)  # the model's numbers have six digits
+    assert min(gaps) == pytest.approx(-SINK, abs=1e-6)  # the model's numbers have six digits
     mine = lowest_and_highest(world.mj, data, world.mj.geom_contype == 1)
-    assert mine[0] == pytest.approx(0.0, abs=1e-6)  # the model's numbers have six digits
+    assert mine[0] == pytest.approx(-SINK, abs=1e-6)  # the model's numbers have six digits
 
 
 def test_centre_of_mass_velocity_and_angular_momentum(world, placed):
@@ -95,9 +101,7 @@ def test_draw_stays_in_its_ranges_and_fills_them(world):
 def test_same_seed_same_state(world):
     def first_state(seed):
         made = scenario.build(replace(world.config, seed=seed, start=RANGES))
-        data = mujoco.MjData(made.model.mj)
-        behaviour = made.behaviour
-        place(made.model, data, made.start, behaviour.orientation, behaviour.pose(made.start.pitch))
+        data = Episode(made).data
         return data.qpos.tobytes() + data.qvel.tobytes()
 
     assert first_state(5) == first_state(5)
@@ -153,8 +157,7 @@ def test_still_is_at_rest_on_the_ground_for_every_roll(about, ground):
     made = scenario.build(
         load(["start=still", f"behaviour.roll_about={about}", f"terrain={ground}", "seed=2"])
     )
-    mj, data = made.model.mj, mujoco.MjData(made.model.mj)
-    place(made.model, data, made.start, made.behaviour.orientation, np.zeros(mj.nu))
+    mj, data = made.model.mj, Episode(made).data
     assert not data.qvel.any()
     assert data.qpos[7:].tolist() == made.start.pose.tolist()
     mujoco.mj_forward(mj, data)
@@ -162,7 +165,7 @@ def test_still_is_at_rest_on_the_ground_for_every_roll(about, ground):
         mujoco.mj_geomDistance(mj, data, mj.geom("ground").id, geom, 10.0, None)
         for geom in np.flatnonzero((mj.geom_bodyid > 0) & (mj.geom_contype > 0))
     ]
-    assert min(gaps) == pytest.approx(0.0, abs=1e-6)  # the model's numbers have six digits
+    assert min(gaps) == pytest.approx(-SINK, abs=1e-6)  # the model's numbers have six digits
 
 
 @pytest.mark.parametrize("behaviour", ["forward_roll_1", "forward_roll_1_phase", "decline"])

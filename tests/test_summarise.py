@@ -179,18 +179,18 @@ def test_runs_below_deeper_folders_count_once(made, tmp_path):
 
 
 def test_without_a_sweep_the_keys_are_those_that_differ(tmp_path):
-    for overrides in (["seed=1"], ["seed=2", "controller.gains.pose_damping=39"]):
+    for overrides in (["seed=1"], ["seed=2", "controller.pose.damping=39"]):
         run(load(["duration=0.5", *overrides]), tmp_path)
     found_ = table(tmp_path)
-    assert found_.keys == ["behaviour", "controller.gains.pose_damping", "seed"]
+    assert found_.keys == ["behaviour", "controller.pose.damping", "seed"]
     assert sorted(found_.rows["seed"]) == [1, 2]
     assert len(grouped(found_).rows) == 2
 
 
 def test_a_foreign_run_in_a_sweep_is_not_pooled_with_what_it_differs_from(sweep):
-    run(load(["duration=0.5", "controller.gains.pose_damping=39"]), sweep)
+    run(load(["duration=0.5", "controller.pose.damping=39"]), sweep)
     groups = grouped(table(sweep))
-    assert "controller.gains.pose_damping" in groups.keys
+    assert "controller.pose.damping" in groups.keys
     assert sorted(groups.rows["n"]) == [1, 3, 3]
 
 

@@ -16,7 +16,7 @@ from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
 from rotctl.run import make, publish
-from rotctl.sweep import engines
+from rotctl.sweep import workers
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned
@@ -214,7 +214,7 @@ def test_a_failed_run_is_a_row_until_it_is_done(tmp_path):
 
 
 def test_a_breakdown_of_the_physics_fails_each_time_it_is_asked_for(cli, tmp_path, monkeypatch):
-    monkeypatch.setattr(engines, "make_engine", lambda jobs, scheduler: Here())
+    monkeypatch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
     arguments = ["sweep", "duration=1", "start.speed_x=[1e12,1e12],[1,2]", "--out", tmp_path]
     for _ in range(2):
         code, stdout, stderr = cli(*arguments, "--quiet")

@@ -58,7 +58,7 @@ def test_grids_follow_each_other():
     "grid",
     [
         ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,2)", "duration=1,2.5"],
-        ["controller.weights.angular_momentum=2,4.5", "seed=1", "start=rest"],
+        ["controller.pose.weight=2,4.5", "seed=1", "start=rest"],
         ["seed=1,2", "seed=5"],  # the later one wins, as in Hydra
         ["start.speed_x=[0,1],[1,2]", "terrain.name='a, b'"],
         ["start.speed_x=[0,1],[1,2]", "start=rest,tucked"],

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import cos, nan, pi, radians, sin
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from rotctl.config import load
@@ -42,11 +43,13 @@ def test_the_mean_or_the_worst_run_counts():
 
 def cut_at(progress, commanded=1.3, tilt=lambda t: 0.0):
     """The time [s] at which a run of this progress(t) [rev] and tilt(t) [deg] is cut, or None."""
-    stop = hopeless(STOPPING, commanded, lambda state: state.axis)
+    stop = hopeless(STOPPING, commanded)
     for i in range(600):
         t, angle = i / 60, radians(tilt(i / 60))
-        state = SimpleNamespace(time=t, axis=(0.0, cos(angle), sin(angle)))
-        if stop(state, SimpleNamespace(angle=(0.0, 2 * pi * progress(t), 0.0))):
+        axis = np.array([0.0, cos(angle), sin(angle)])
+        turned = np.array([0.0, 2 * pi * progress(t), 0.0])
+        signals = SimpleNamespace(angle=turned, axis=axis, axes=np.eye(3))
+        if stop(SimpleNamespace(state=SimpleNamespace(time=t), signals=signals)):
             return t
     return None
 

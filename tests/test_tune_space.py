@@ -70,12 +70,12 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 1, "key"],
             "seed",
-            "parameters[1]: key must be dotted names, as in controller.gains.linear_damping[0]",
+            "parameters[1]: key must be dotted names, as in controller.tasks.linear.damping[0]",
         ),
         (
             ["parameters", 0, "key"],
-            "controller.weights.pose",
-            "parameters name controller.weights.pose twice",
+            "controller.pose.weight",
+            "parameters name controller.pose.weight twice",
         ),
         (["parameters"], [], "parameters=[]: too few values, at least 2"),
         (
@@ -85,8 +85,8 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         ),
         (
             ["parameters", 0, "key"],
-            "controller.gains.{a",
-            "parameters[0]: key must be dotted names, as in controller.gains.linear_damping[0]",
+            "controller.tasks.{a",
+            "parameters[0]: key must be dotted names, as in controller.tasks.linear.damping[0]",
         ),
         (["runs"], None, "runs=null: must be keys with values"),
         (
@@ -159,9 +159,9 @@ def test_a_number_that_the_config_lacks_begins_at_its_start(tmp_path):
 
 def test_numbers_go_in_and_out_by_key_and_the_rest_stays():
     data = to_dict(load([]))
-    assert get(data, "controller.gains.linear_damping[0]") == 3.62
-    changed = put(data, {"controller.gains.linear_damping[0]": 5.0, "behaviour.speed": 2.0})
-    assert list(changed["controller"]["gains"]["linear_damping"]) == [5.0, 8.59, 7.8]
+    assert get(data, "controller.tasks.linear.damping[0]") == 3.62
+    changed = put(data, {"controller.tasks.linear.damping[0]": 5.0, "behaviour.speed": 2.0})
+    assert list(changed["controller"]["tasks"]["linear"]["damping"]) == [5.0, 8.59, 7.8]
     assert changed["behaviour"]["speed"] == 2.0
     assert data == to_dict(load([]))
     assert (
@@ -173,9 +173,9 @@ def test_numbers_go_in_and_out_by_key_and_the_rest_stays():
 @pytest.mark.parametrize(
     ("key", "said"),
     [
-        ("controller.weights.poses", "not in the config; valid under controller.weights: linear_"),
-        ("controller.gains.linear_damping[3]", "not in the config; valid under controller.gains.l"),
-        ("controller.gains.linear_damping", "is a list of 3, no single number"),
+        ("controller.pose.weigh", "not in the config; valid under controller.pose: stiffness, "),
+        ("controller.tasks.linear.damping[3]", "not in the config; valid under controller.tasks.l"),
+        ("controller.tasks.linear.damping", "is a list of 3, no single number"),
         ("controller.solver", "is the value 'boxqp', no single number"),
     ],
 )
@@ -194,7 +194,7 @@ def test_a_start_outside_its_range_and_a_range_outside_the_config_are_refused(tm
         start_values(space, variations(space, [])[0])
     path.write_text(text.replace("low: 0.5, high: 20.0, scale: log", "low: -0.5, high: 20.0"))
     space = load_space(str(path))
-    with pytest.raises(InputError, match="^controller.weights.angular_momentum=-0.5: must be"):
+    with pytest.raises(InputError, match=r"^controller\.tasks\.spin\.weight\[1\]=-0\.5: must be"):
         start_values(space, variations(space, [])[0])
 
 

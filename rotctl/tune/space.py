@@ -58,7 +58,7 @@ class Parameter:
     """One number of the config that the search may change.
 
     Attributes:
-        key: dotted, an element of a list in brackets: `controller.gains.linear_damping[0]`; in a
+        key: dotted, an element of a list in brackets: `controller.tasks.linear.damping[0]`; in a
             file, braces stand for several: `behaviour.poses.{a,b}.knee`.
         low, high: its range, in `unit`.
         scale: `log` for what is known only to a factor.
@@ -76,7 +76,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not _KEY.fullmatch(self.key):
-            raise ValueError("key must be dotted names, as in controller.gains.linear_damping[0]")
+            raise ValueError("key must be dotted names, as in controller.tasks.linear.damping[0]")
         if self.low >= self.high:
             raise ValueError(f"low={self.low:g} must be below high={self.high:g}")
         if self.scale == "log" and self.low <= 0:
