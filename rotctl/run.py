@@ -4,13 +4,11 @@ import json
 import math
 import os
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import mujoco
 import numpy as np
 
 from rotctl import files
@@ -19,6 +17,7 @@ from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, RunLog, TrajectoryBuffer, collect, encode_run, write_log
 from rotctl.log.outcome import require_verdict
 from rotctl.metrics.judge import judge
+from rotctl.quiet import quiet
 from rotctl.scenario import Scenario, build
 from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
@@ -239,18 +238,6 @@ def stored(folder: Path, run_id: str) -> RunLog:
     if not all((folder / name).exists() for name in (SUMMARY_NAME, CONFIG_NAME)):
         _write_beside(folder, outcome, str(log.attributes["config"]))
     return log
-
-
-@contextmanager
-def quiet() -> Iterator[list[str]]:
-    """Collects MuJoCo's warnings, which else go to stdout and into a MUJOCO_LOG.TXT."""
-    before = mujoco.get_mju_user_warning()
-    heard: list[str] = []
-    mujoco.set_mju_user_warning(heard.append)
-    try:
-        yield heard
-    finally:
-        mujoco.set_mju_user_warning(before)
 
 
 def _write_beside(folder: Path, summary: Summary, config: str) -> None:

@@ -17,7 +17,8 @@ from rotctl.config import recorded
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
-from rotctl.run import built, in_memory, origin, quiet, summarise
+from rotctl.quiet import quiet
+from rotctl.run import built, in_memory, origin, summarise
 from rotctl.scenario import Scenario
 
 CHANGED = " with changes"

@@ -1,11 +1,13 @@
 """The model in a log, which may come from a stranger, to a MuJoCo model that is safe to draw."""
 
+from math import prod
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from rotctl.errors import LogError
 from rotctl.log import RunLog
 from rotctl.log.schema import MODEL_PATH
+from rotctl.quiet import quiet
 
 if TYPE_CHECKING:
     import mujoco
@@ -53,8 +55,15 @@ TAGS = frozenset(
 _FILES = ("file", "meshdir", "texturedir", "assetdir", "plugin")
 _SIZES = ("width", "height", "nrow", "ncol")  # of textures and height fields
 MAX_SIZE = 1024
-MAX_ELEMENTS = 20_000
+MAX_ATTRIBUTES = 50
 MAX_DEPTH = 100
+MOST = {
+    "elements": 20_000,
+    "bodies": 2000,
+    "degrees of freedom": 1000,  # MuJoCo compiles with a mass matrix of this squared
+    "heights and pixels": 2**20,  # of each, OpenGL keeps some 400 bytes
+}
+MAX_BYTES = 2**30  # of the model and its data
 
 
 def load(log: RunLog) -> "mujoco.MjModel":
@@ -69,7 +78,10 @@ def load(log: RunLog) -> "mujoco.MjModel":
     where = f"{log.path}: {MODEL_PATH}"
     try:
         text = checked(log.model_xml)
-        model = mujoco.MjModel.from_xml_string(text)
+        with quiet() as heard:
+            model = mujoco.MjModel.from_xml_string(text)
+        if heard:  # of numbers that are none: rotctl writes no such model
+            raise LogError(f"does not compile cleanly: {' '.join(heard[0].split()):.200}")
     except LogError as error:
         raise LogError(f"{where} {error}") from None
     except (ValueError, mujoco.FatalError) as error:
@@ -77,6 +89,8 @@ def load(log: RunLog) -> "mujoco.MjModel":
         raise LogError(f"{where} does not compile: {reason:.200}") from None
     if model.nq != log.sizes["nq"]:
         raise LogError(f"{where} has nq = {model.nq}, the trajectory {log.sizes['nq']}")
+    if model.nbuffer + model.narena > MAX_BYTES:
+        raise LogError(f"{where} takes more than {MAX_BYTES} bytes of memory")
     if not (model.geom_bodyid > 0).any():
         raise LogError(f"{where} has nothing that moves")
     return model
@@ -88,6 +102,8 @@ def checked(text: str) -> str:
     Raises:
         LogError: see `load`.
     """
+    if text.count("<") > 3 * MOST["elements"]:  # before each takes 40 times its text in memory
+        raise LogError(f"has more than {MOST['elements']} elements")
     if "<!" in text.replace("<!--", ""):
         raise LogError("has a document type; a log's model needs none")
     try:
@@ -101,14 +117,13 @@ def checked(text: str) -> str:
 def _check(root: ElementTree.Element) -> None:
     """Walk all elements; no recursion, since the depth is a stranger's choice too."""
     waiting = [(root, 1)]
-    seen = 0
+    found = dict.fromkeys(MOST, 0)
     while waiting:
         element, depth = waiting.pop()
-        seen += 1
-        if seen > MAX_ELEMENTS:
-            raise LogError(f"has more than {MAX_ELEMENTS} elements")
         if depth > MAX_DEPTH:
             raise LogError(f"is nested more than {MAX_DEPTH} deep")
+        if len(element.attrib) > MAX_ATTRIBUTES:
+            raise LogError(f"has more than {MAX_ATTRIBUTES} attributes in <{element.tag:.40}>")
         if element.tag not in TAGS:
             raise LogError(f"has <{element.tag:.40}>, which a log's model may not have")
         for name, value in element.attrib.items():
@@ -120,7 +135,29 @@ def _check(root: ElementTree.Element) -> None:
                 raise LogError(
                     f"has {name}={value!r:.40} in <{element.tag}>, valid: 0 to {MAX_SIZE}"
                 )
+        found["elements"] += 1
+        found["bodies"] += element.tag == "body"
+        found["degrees of freedom"] += _freedom(element)
+        found["heights and pixels"] += _cells(element)
+        for name, most in MOST.items():
+            if found[name] > most:
+                raise LogError(f"has more than {most} {name}")
         waiting.extend((child, depth + 1) for child in element)
+
+
+def _freedom(element: ElementTree.Element) -> int:
+    """Degrees of freedom that an element may add."""
+    if element.tag == "freejoint":
+        return 6
+    return {"free": 6, "ball": 3}.get(element.get("type", ""), 1) * (element.tag == "joint")
+
+
+def _cells(element: ElementTree.Element) -> int:
+    """Heights of a field, or pixels of a texture, of which a cube has six faces."""
+    names = {"texture": ("width", "height"), "hfield": ("nrow", "ncol")}.get(element.tag, ())
+    sides = [int(element.get(name, 0)) for name in names]
+    cube = element.tag == "texture" and element.get("type") != "2d"
+    return max(prod(sides), 6 * sides[0] ** 2 if cube else 0) if sides else 0
 
 
 def _fits(digits: str) -> bool:
