@@ -1,9 +1,9 @@
 """YAML and JSON from strangers to plain data: numbers, texts, lists and dicts of them.
 
-Nothing is executed, looked up or multiplied: no tags, no aliases, no keys twice, bounded depth and
-digits, no character that neither YAML nor a terminal would show. A date stays a text. No message
-repeats a syntax error's line: the file may not be what its name says, and messages end up in
-reports.
+Nothing is executed, looked up or multiplied without bound: no tags, no keys twice, bounded depth,
+digits and aliases, no character that neither YAML nor a terminal would show. A date stays a text.
+No message repeats a syntax error's line: the file may not be what its name says, and messages end
+up in reports.
 """
 
 import json
@@ -21,6 +21,7 @@ from rotctl.errors import InputError
 LARGEST = 2_000_000  # bytes of a YAML file; people write them
 LARGEST_LINES = 100_000_000  # bytes of a file of JSON lines
 MOST_LINES = 500_000
+MOST_VALUES = 200_000  # of a YAML file: a clip of an hour's work has a hundred thousand
 DEEPEST = 12  # lists and dicts within each other
 MOST_DIGITS = 40  # of a whole number
 
@@ -76,25 +77,25 @@ _Loader.yaml_implicit_resolvers = {
 _Loader.add_constructor(f"{_TYPE}int", _Loader.construct_yaml_int)
 
 
-def read_yaml(path: Path, limit: int = LARGEST, *, linked: bool) -> Any:
+def read_yaml(path: Path, most: int = MOST_VALUES, *, linked: bool) -> Any:
     """The data of a YAML file; None if there are none.
 
     Args:
-        limit: largest size [bytes].
+        most: values that it may have, those of aliases counted each time.
         linked: whether the path may be a symbolic link, see `files.opened`.
 
     Raises:
         InputError: one line that names the file and the line in it.
     """
-    return from_yaml(str(path), files.text(path, limit, linked=linked))
+    return from_yaml(str(path), files.text(path, LARGEST, linked=linked), most)
 
 
-def from_yaml(where: str, text: str) -> Any:
+def from_yaml(where: str, text: str, most: int = MOST_VALUES) -> Any:
     """The data of a YAML text; `where` it is from is for the messages."""
     if len(text) > LARGEST:
         raise InputError(f"{where}: larger than {LARGEST / 1e6:g} MB")
     try:
-        _check(text)
+        _check(text, most)
         return yaml.load(text, _Loader)  # safe: plain data only
     except yaml.MarkedYAMLError as error:
         line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
@@ -145,20 +146,42 @@ def read_json_lines(path: Path, *, linked: bool) -> Iterator[tuple[int, Any]]:
             yield number, None
 
 
-def _check(text: str) -> None:
-    """Refuse what would cost more than it looks like: before anything is built, event by event."""
-    depth = 0
+def _check(text: str, most: int) -> None:
+    """Refuse what would cost more than it looks like, before anything is built.
+
+    An alias stands for all that its anchor holds, and aliases of aliases multiply.
+    """
+    known: dict[str, tuple[int, int]] = {}  # anchor -> values, and how deep they are nested
+    within: list[tuple[str | None, int, int]] = []  # what is open: anchor, values before, depth
+    count = 0
     for event in yaml.parse(text, _Loader):
-        if isinstance(event, yaml.CollectionStartEvent):
-            depth += 1
-        elif isinstance(event, yaml.CollectionEndEvent):
-            depth -= 1
-        if depth > DEEPEST:  # would overflow the loader's stack
-            raise _at(event, f"nested more than {DEEPEST} deep")
-        if isinstance(event, yaml.AliasEvent):
-            raise _at(event, "has an alias; write it out")
+        anchor: str | None = getattr(event, "anchor", None)
         if getattr(event, "tag", None) is not None:
             raise _at(event, "has a tag; write plain values")
+        if isinstance(event, yaml.CollectionEndEvent):
+            anchor, before, depth = within.pop()
+            size, depth = count - before, depth + 1
+        elif isinstance(event, yaml.AliasEvent):
+            if anchor not in known:
+                raise _at(event, "has an alias of what it is in, or of nothing")
+            size, depth = known[anchor]
+            count += size
+        elif isinstance(event, yaml.NodeEvent):
+            size, depth = 1, 0
+            count += 1
+        else:
+            continue  # of the stream
+        if isinstance(event, yaml.CollectionStartEvent):
+            within.append((anchor, count - 1, 0))
+        else:
+            known |= {anchor: (size, depth)} if anchor else {}
+            if within:
+                name, before, deepest = within[-1]
+                within[-1] = name, before, max(deepest, depth)
+        if len(within) + depth > DEEPEST:  # would overflow the loader's stack
+            raise _at(event, f"nested more than {DEEPEST} deep")
+        if count > most:
+            raise _at(event, f"has more than {most} values")
 
 
 def _reason(error: yaml.MarkedYAMLError) -> str:

@@ -9,6 +9,7 @@ from rotctl import documents, files, plain
 from rotctl.errors import InputError
 
 _NO_GROUPS = {"motion", "tune"}  # folders of conf/ that no config is composed from
+MOST_VALUES = 20_000  # of a file; Hydra takes seconds for as many
 _DEFAULT = re.compile(r"(?:override )?/?(\w+)(?:@[\w.]+)?")  # a group in a list of defaults
 
 
@@ -97,7 +98,7 @@ def _read(path: Path) -> dict[str, Any]:
     Raises:
         InputError: it is wrong, or would have something looked up; one line that names it.
     """
-    data = documents.read_yaml(path, linked=True) or {}
+    data = documents.read_yaml(path, MOST_VALUES, linked=True) or {}
     if not isinstance(data, dict):
         raise InputError(f"{path}: must be keys with values")
     for parts, value in plain.leaves(data):

@@ -15,10 +15,26 @@ from rotctl.listing import conf_dir, shipped
 NO_TEXT = "a key is no text; put it in quotes"
 
 
+def test_values_are_counted(tmp_path):
+    with pytest.raises(InputError) as caught:
+        from_yaml("f", "[1, 2,\n[3]]", 4)
+    assert str(caught.value) == "f:2: has more than 4 values"
+    assert from_yaml("f", "[1, 2,\n[3]]", 5) == [1, 2, [3]]
+
+
 def refused(text):
     with pytest.raises(InputError) as caught:
         from_yaml("f", text)
     return str(caught.value).removeprefix("f:")
+
+
+def laughs(form, times):
+    """Aliases of aliases of aliases, so many times each."""
+    lines = ["a0: &a0 [x]"]
+    lines += [
+        f"a{i + 1}: &a{i + 1} " + form.format(", ".join([f"*a{i}"] * times)) for i in range(15)
+    ]
+    return "\n".join(lines)
 
 
 @pytest.mark.parametrize(
@@ -29,7 +45,10 @@ def refused(text):
         ("\na: " + "[" * 3000, "2: nested more than 12 deep"),
         ("a: " + "[" * 12 + "]" * 12, "1: nested more than 12 deep"),
         ("- " * 100_000, "1: nested more than 12 deep"),
-        ("a: &x [1]\nb: *x", "2: has an alias; write it out"),
+        ("a: &x [*x]", "1: has an alias of what it is in, or of nothing"),
+        ("a: *x", "1: has an alias of what it is in, or of nothing"),
+        (laughs("[{}]", 10), "6: has more than 200000 values"),
+        (laughs("[{}]", 1), "12: nested more than 12 deep"),
         ("a: !!python/object/apply:os.system [x]", "1: has a tag; write plain values"),
         ("a: !!timestamp 2026-13-45", "1: has a tag; write plain values"),
         ("a: !!binary aGk=", "1: has a tag; write plain values"),
@@ -56,6 +75,8 @@ def test_what_is_more_than_plain_yaml_is_one_line(text, message):
         ("a: 2026-13-45", {"a": "2026-13-45"}),
         ("a: 2026-01-02", {"a": "2026-01-02"}),
         ("<<: {a: 1}", {"<<": {"a": 1}}),
+        ("a: &x [1, &y {b: 2}]\nc: *x\nd: [*y, *y]",
+         {"a": [1, {"b": 2}], "c": [1, {"b": 2}], "d": [{"b": 2}] * 2}),
         ("[1, 0x10, -2.5, 1e3, yes, ~, x, 'no']", [1, 16, -2.5, "1e3", True, None, "x", "no"]),
         ("[" * 12 + "]" * 12, [[[[[[[[[[[[]]]]]]]]]]]]),
         (f"a: {'9' * 40}", {"a": int("9" * 40)}),
