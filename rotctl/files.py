@@ -106,8 +106,8 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[Path]:
     part = path.with_name(f"{path.name}.part")
     try:
         part.unlink(missing_ok=True)
-        os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
-        try:
+        try:  # before it is made: an interrupt may come right after
+            os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
             yield part
             if durable:
                 _sync(part)

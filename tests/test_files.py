@@ -119,6 +119,16 @@ def test_what_was_there_stays_where_writing_fails(folder):
     assert sorted(os.listdir(folder)) == ["a", "b.part"]
 
 
+def test_an_interrupt_leaves_nothing_wherever_it_comes(folder, monkeypatch):
+    def interrupt(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(files.os, "close", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        files.replace(folder / "a", b"new")
+    assert os.listdir(folder) == []
+
+
 def test_a_folder_that_stays_empty_goes_again(folder):
     with files.folder(folder / "a" / "b", linked=False):
         pass
