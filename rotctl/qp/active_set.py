@@ -6,11 +6,13 @@ singular. This one takes over there. Each step solves the free variables exactly
 as the first bound; where none is met, the variable whose multiplier is most wrong is set free.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from rotctl.linear import NotPositiveDefiniteError, product, solve
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
-from rotctl.qp.scaling import Scaled, scale
+from rotctl.qp.scaling import DIAGONAL, Scaled, scale
 from rotctl.rotations import Array
 
 STEPS = 30  # allowed, per variable
@@ -29,8 +31,11 @@ class ActiveSet:
         if reason:
             return failed(problem, reason)
         scaled = scale(problem)
+        H = scaled.regularised()
         try:
-            found = _descend(scaled, scaled.regularised(), scaled.start(start))
+            found = _descend(scaled, H, scaled.start(start))
+            # One proximal step: the addition now holds z near the solution, not near zero.
+            found = _descend(replace(scaled, f=scaled.f - DIAGONAL * found), H, found)
         except NotPositiveDefiniteError as error:
             return failed(problem, str(error))
         return scaled.solution(found)

@@ -10,8 +10,9 @@ from rotctl.rotations import Array
 
 # Added to the unit diagonal of the scaled Hessian. Four generators span a contact's three
 # force components, so the Hessian has a null space along which the force does not change;
-# this picks one point of it.
-DIAGONAL = 1e-7
+# this picks one point of it. It is far below the smallest eigenvalue beside it, which is about
+# 1e-8 where a stiff contact is held by torques at their limits.
+DIAGONAL = 1e-10
 TOLERANCE = 1e-6  # accepted natural residual of the scaled problem [-]
 SMALLEST_WIDTH = 1e-9  # mju_boxQP refuses a lower bound equal to its upper one
 
