@@ -125,10 +125,10 @@ def test_violation_does_not_hide_nan():
 def test_recorded_steps(name, world, supported):
     solver = make_solver(f"qpsolvers:{name}")
     for step in supported[::10]:
-        _, terms = world.terms(step)
-        found = condensed.solve(terms, solver)
+        _, stack = world.stack(step)
+        found = condensed.solve(stack, solver)
         assert found.solution.solved, found.solution.reason
-        assert np.abs(found.torque - condensed.solve(terms, BoxQP()).torque).max() < 0.05
+        assert np.abs(found.torque - condensed.solve(stack, BoxQP()).torque).max() < 0.05
 
 
 @pytest.mark.parametrize("name", ["osqpp", "", "daqp", "BOXQP"])

@@ -169,9 +169,9 @@ def test_regularisation_moves_torques_by_less_than_a_millinewtonmetre(world, ste
     """Against an exact solver with rows, over all recorded steps."""
     exact, worst = make_solver("qpsolvers:daqp"), 0.0
     for step in steps:
-        _, terms = world.terms(step)
+        _, stack = world.stack(step)
         for share in (1.0, 0.3):
-            limited = replace(terms, torque_limit=share * terms.torque_limit)
+            limited = replace(stack, torque_limit=share * stack.torque_limit)
             found = condensed.solve(limited, BoxQP())
             expected = condensed.solve(limited, exact)
             assert found.solution.solved
@@ -181,10 +181,10 @@ def test_regularisation_moves_torques_by_less_than_a_millinewtonmetre(world, ste
 
 
 def test_deterministic(world, supported):
-    _, terms = world.terms(supported[0])
-    _, other = world.terms(supported[20])
+    _, stack = world.stack(supported[0])
+    _, other = world.stack(supported[20])
     solver = BoxQP()
-    first = condensed.solve(terms, solver)
+    first = condensed.solve(stack, solver)
     condensed.solve(other, solver)
-    again = condensed.solve(terms, solver)
+    again = condensed.solve(stack, solver)
     assert first.torque.tobytes() == again.torque.tobytes()

@@ -53,8 +53,7 @@ def test_root_control_sees_the_pelvis_alone(about):
     missing = axis / np.linalg.norm(axis) * np.arccos(lateral[1])
     assert gains.stiffness[1] == 0.0
     expected = state.momentum.inertia @ (
-        np.array(gains.stiffness) * missing
-        + np.array(gains.damping) * (wanted - velocity[:3])
+        np.array(gains.stiffness) * missing + np.array(gains.damping) * (wanted - velocity[:3])
     )
     assert found == pytest.approx(expected, rel=1e-9)
     assert rotate(now.excursion.orientation, np.array([0.0, 1.0, 0.0])) == pytest.approx(lateral)

@@ -486,7 +486,10 @@ def test_a_blow_up_is_a_complaint(world, settings):
 @pytest.mark.parametrize(
     ("override", "message"),
     [
-        ("physics.stepper=x", "physics.stepper=\"x\": no such stepper; valid: 'mujoco', 'lockstep'"),
+        (
+            "physics.stepper=x",
+            "physics.stepper=\"x\": no such stepper; valid: 'mujoco', 'lockstep'",
+        ),
         ("physics.sweeps=0", "physics.sweeps=0: must be greater than or equal to 1"),
         ("physics.margin=0", "physics.margin=0: must be greater than 0"),
         (

@@ -172,10 +172,10 @@ def test_agrees_with_boxqp_on_recorded_steps(world, supported):
     """Approximate, but never unsolved, and close."""
     solver, apart = Osqp(), []
     for step in supported[::2]:
-        _, terms = world.terms(step)
-        found = condensed.solve(terms, solver)
+        _, stack = world.stack(step)
+        found = condensed.solve(stack, solver)
         assert found.solution.solved, found.solution.reason
-        apart.append(np.abs(found.torque - condensed.solve(terms, BoxQP()).torque).max())
+        apart.append(np.abs(found.torque - condensed.solve(stack, BoxQP()).torque).max())
     assert np.median(apart) < 0.3
     assert np.percentile(apart, 90) < 3.0
 
