@@ -399,6 +399,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(sweep, tmp_path, capsys):
         ("heading off by 40 deg at the end", "heading off"),
         ("heading off by -40 deg at the end", "heading off"),
         ("drifted 3.10 m sideways", "drifted"),
+        ("left the ground at t = 3.10 s, x = 60.03 m, y = 1.00 m: it", "left the ground"),
         ("physics broke down at t = 0.50 s: MuJoCo warns", "physics broke down"),
         ("", "no reason given"),
     ],

@@ -13,6 +13,7 @@ from rotctl.log import RunLog
 from rotctl.mechanics import model as models
 from rotctl.mechanics.model import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
+from rotctl.report import stored_model
 from rotctl.run import LOG_NAME, run
 from rotctl.scenario import build, model_of
 from rotctl.simulation.episode import Episode
@@ -214,11 +215,13 @@ def test_a_world_that_is_too_long_is_refused(overrides, message):
     assert str(error.value) == message
 
 
-def test_an_hour_of_hills_takes_two_fields():
-    model = build(load(["terrain=uneven", "duration=3600"])).model
-    assert model.ground.extent.end > 10_800
-    assert model.mj.nhfield == 2
-    assert len(model.mjcf) < 1_000_000
+@pytest.mark.parametrize(("terrain", "megabytes"), [("uneven", 1), ("stairs_down", 3)])
+def test_an_hour_of_it_is_a_model_that_a_log_can_hold(terrain, megabytes):
+    model = model_of(load([f"terrain={terrain}", "duration=3600"]))
+    assert model.ground.extent.end >= 10_800
+    assert model.mj.nhfield == (2 if terrain == "uneven" else 0)
+    assert len(model.mjcf) < megabytes * 1_000_000
+    assert stored_model.checked(model.mjcf)
 
 
 def test_the_command_follows_the_slope():
