@@ -150,7 +150,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     mj = model.mj
     mujoco.mj_resetData(mj, data)
     data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
-    data.qpos[3:7] = advance(usual.orientation, start.tilt)
+    data.qpos[3:7] = advance(usual.orientation, product(start.tilt, axes))
     mujoco.mj_kinematics(mj, data)
     data.qpos[2] -= _clearance(model, data) + SINK
     mujoco.mj_kinematics(mj, data)
