@@ -8,8 +8,6 @@ from pathlib import Path
 from rotctl.errors import InputError
 from rotctl.wording import described, one_line, printable, readable
 
-OVERHEAD_RUNS = 1000  # of a sweep that rotctl bench times
-
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
@@ -186,14 +184,11 @@ def verify(arguments: argparse.Namespace) -> int:
 def bench(arguments: argparse.Namespace) -> int:
     """Measure where the time goes."""
     from rotctl.bench import bench
-    from rotctl.sweep import overhead
 
     if arguments.repeats < 1:
         raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
     for table in bench(arguments.repeats, arguments.plot):
         print(table, end="\n\n", flush=True)
-    sizes = ((OVERHEAD_RUNS, 1.0, 2), (OVERHEAD_RUNS // 8, 20.0, 1), (OVERHEAD_RUNS // 8, 20.0, 2))
-    print(overhead.table([overhead.measure(*size) for size in sizes]))
     return 0
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from rotctl.bench import scaling, solvers, split, startup
+from rotctl.bench import overhead, scaling, solvers, split, startup
 
 STATES = 150  # for the comparison of solvers; literal OSQP takes tens of milliseconds on each
 
@@ -22,3 +22,4 @@ def bench(repeats: int, picture: Path | None) -> Iterator[str]:
     yield scaling.table(costs)
     if picture is not None:
         scaling.plot(costs, picture)
+    yield overhead.sweeps()

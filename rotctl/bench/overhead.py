@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rotctl.config import load
-from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.simulation.loop import simulate
 
+RUNS = 1000  # of short sweeps; of long ones an eighth
 SAMPLE = 20  # runs whose simulation is timed alone
 
 
@@ -63,9 +64,14 @@ def _simulation(runs: int, duration: float) -> float:
     for seed in seeds:
         scenario = build(load([f"duration={duration:g}", f"seed={seed}"]))
         begin = time.process_time()
-        in_memory(scenario)
+        simulate(scenario, duration, scenario.config.physics.contact_capacity)
         total += time.process_time() - begin
     return total / len(seeds)
+
+
+def sweeps() -> str:
+    """Sweeps of short and of long runs, with one process and with two."""
+    return table([measure(RUNS, 1.0, 2), *(measure(RUNS // 8, 20.0, jobs) for jobs in (1, 2))])
 
 
 def table(measured: list[Overhead]) -> str:
