@@ -188,5 +188,5 @@ def test_a_posture_that_does_not_fit(world):
     with pytest.raises(InputError) as error:
         draw(tailed, world.model, "left", generator)
     assert str(error.value).startswith(
-        "start.postures.left.pose names the unknown joint 'tail'; valid: waist_y, waist_x, "
+        "start.postures.left.pose names the unknown joint 'tail'; valid: ankle_x, ankle_y, "
     )

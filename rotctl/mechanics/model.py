@@ -67,10 +67,22 @@ class Model:
     look_ahead: float
     ground: Ground
 
-    def motors(self, joint: str) -> list[int]:
-        """Motors of a joint's name; one without a side stands for both; none if it is unknown."""
+    def motors(self, joint: str, key: str) -> list[int]:
+        """Motors of a joint's name; one without a side stands for both.
+
+        Raises:
+            InputError: there is no such joint; `key` says where it stands.
+        """
         named = (joint, *(joint + side for side in SIDES))
-        return [i for i, name in enumerate(self.joint_names) if name in named]
+        motors = [i for i, name in enumerate(self.joint_names) if name in named]
+        if not motors:
+            left, right = SIDES
+            bases = sorted({n.removesuffix(left).removesuffix(right) for n in self.joint_names})
+            raise InputError(
+                f"{key} names the unknown joint {joint!r}; "
+                f"valid: {', '.join(bases)}, limb joints also with {left} or {right}"
+            )
+        return motors
 
 
 def build(

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from rotctl import checked
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
-from rotctl.motion.clip import Clip, RollAbout, joint_columns
+from rotctl.motion.clip import Clip, RollAbout
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.turning import Motion, rolled_by, upright
 from rotctl.motion.writing import make_clip
@@ -104,7 +104,7 @@ def author(model: Model, keys: Keys, character: str) -> Clip:
 def _pose(model: Model, key: Key) -> Array:
     pose = np.zeros(len(model.joint_names))
     for name, angle in key.pose.items():
-        columns = joint_columns(model, name, f"the key at turn {key.turn:g}")
+        columns = model.motors(name, f"the key at turn {key.turn:g}")
         low, high = model.joint_range[columns[0]]
         if not low <= angle <= high:
             raise InputError(

@@ -84,25 +84,10 @@ class Clip:
         Raises:
             InputError: the clip names a joint that the model has not.
         """
-        found = np.zeros((self.samples, len(model.joint_names)))
+        poses = np.zeros((self.samples, len(model.joint_names)))
         for name, samples in self.joints.items():
-            found[:, joint_columns(model, name, f"clip {self.name!r}")] = np.array([samples]).T
-        return np.asarray(np.clip(found, *model.joint_range.T))
-
-
-def joint_columns(model: Model, name: str, whose: str) -> list[int]:
-    """`Model.motors` of a joint's name.
-
-    Raises:
-        InputError: there are none; the message says whose name it was.
-    """
-    found = model.motors(name)
-    if not found:
-        raise InputError(
-            f"{whose} names the unknown joint {name!r}; "
-            f"the character's: {', '.join(model.joint_names)}"
-        )
-    return found
+            poses[:, model.motors(name, f"clip {self.name!r}")] = np.array([samples]).T
+        return np.asarray(np.clip(poses, *model.joint_range.T))
 
 
 def names() -> list[str]:

@@ -12,8 +12,7 @@ from math import cos, sin
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.errors import InputError
-from rotctl.mechanics.model import SIDES, Model
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
@@ -72,14 +71,6 @@ def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> 
 def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
     columns = np.zeros((3, len(model.joint_names)))
     for name, angle in pose.items():
-        found = model.motors(name)
-        if not found:
-            left, right = SIDES
-            bases = sorted({n.removesuffix(left).removesuffix(right) for n in model.joint_names})
-            raise InputError(
-                f"{key} names the unknown joint {name!r}; "
-                f"valid: {', '.join(bases)}, limb joints also with _l or _r"
-            )
         values = (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle
-        columns[:, found] = np.array(values)[:, None]
+        columns[:, model.motors(name, key)] = np.array(values)[:, None]
     return columns

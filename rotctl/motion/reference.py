@@ -16,7 +16,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
 from rotctl.mechanics.model import Model
-from rotctl.motion.clip import Clip, joint_columns
+from rotctl.motion.clip import Clip
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite, NonNegative
 
@@ -87,7 +87,7 @@ def _added(model: Model, offsets: Mapping[str, Sequence[float]], samples: int) -
     phases = tau * np.arange(samples) / samples
     angles = np.zeros((samples, len(model.joint_names)))
     for name, harmonics in offsets.items():
-        columns = joint_columns(model, name, "behaviour.reference.offsets")
+        columns = model.motors(name, "behaviour.reference.offsets")
         angles[:, columns] += _fourier(harmonics, phases)[:, None]
     return angles
 

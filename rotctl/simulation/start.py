@@ -130,12 +130,7 @@ def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     """Angles by joint name to an array (nu,) in motor order."""
     pose = np.zeros(len(model.joint_names))
     for name, angle in angles.items():
-        found = model.motors(name)
-        if not found:
-            raise InputError(
-                f"{key} names the unknown joint {name!r}; valid: {', '.join(model.joint_names)}"
-            )
-        pose[found] = angle
+        pose[model.motors(name, key)] = angle
     return pose
 
 
