@@ -18,8 +18,9 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
-from rotctl.run import built, in_memory, origin, summarise
+from rotctl.run import built, in_memory, origin
 from rotctl.scenario import Scenario
+from rotctl.summary import summarise
 
 CHANGED = " with changes"
 TIMES = ("real_time_factor",)  # of the summary row: no two runs take the same

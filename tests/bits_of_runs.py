@@ -9,8 +9,9 @@ from pathlib import Path
 
 from rotctl.config import check
 from rotctl.log import collect
-from rotctl.run import in_memory, summarise
+from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.summary import summarise
 
 
 def digest(config):

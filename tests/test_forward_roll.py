@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from rotctl.config import load
-from rotctl.run import in_memory, summarise
+from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.summary import summarise
 
 
 def roll(*overrides):

@@ -8,8 +8,9 @@ import pytest
 
 from rotctl.config import load
 from rotctl.metrics.rolling import failure_reason, measure
-from rotctl.run import in_memory, summarise
+from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.summary import summarise
 
 
 def judged(*overrides):

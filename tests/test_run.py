@@ -10,7 +10,8 @@ import pytest
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog
-from rotctl.run import LOG_NAME, SUMMARY_NAME, run
+from rotctl.run import LOG_NAME, run
+from rotctl.run_folder import SUMMARY_NAME
 from rotctl.scenario import build
 
 # In the order of the issue.

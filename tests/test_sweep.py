@@ -15,7 +15,8 @@ from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
-from rotctl.run import make, publish
+from rotctl.run import make
+from rotctl.run_folder import publish
 from rotctl.sweep import workers
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked

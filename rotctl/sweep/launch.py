@@ -12,7 +12,9 @@ from pathlib import Path
 from rotctl.errors import InputError
 from rotctl.results import manifest
 from rotctl.results.manifest import Entry
-from rotctl.run import Summary, broke_down, make, publish
+from rotctl.run import make
+from rotctl.run_folder import publish
+from rotctl.summary import Summary, broke_down
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned
 
@@ -62,7 +64,7 @@ def launch(
     folder: Path,
     engine: Engine,
     retries: int,
-    progress: Callable[[Tally], object] = lambda now: None,
+    progress: Callable[[Tally], object] = lambda so_far: None,
 ) -> Tally:
     """Do what is left; the caller holds the folder's lock.
 
@@ -75,27 +77,27 @@ def launch(
         InputError: the folder cannot be written: the disk is full, say.
         RotctlError: the engine is lost.
     """
-    now = tally(plan.done.items())
+    so_far = tally(plan.done.items())
     entries = manifest.read(folder)
     for run in runs:
         earlier = entries[run.run_id].values if run.run_id in entries else {}
         entries[run.run_id] = Entry(run.run_id, {**earlier, **run.values})
     manifest.write(folder, entries.values())
-    progress(now)
+    progress(so_far)
     try:
         with closing(engine.map(make, [run.config for run in plan.left], retries)) as results:
-            for index, made in results:
+            for index, result in results:
                 run = plan.left[index]
-                if isinstance(made, Failure):
-                    entries[run.run_id] = replace(entries[run.run_id], failure=made.reason)
-                    now = now.plus(run.run_id, made)
+                if isinstance(result, Failure):
+                    entries[run.run_id] = replace(entries[run.run_id], failure=result.reason)
+                    so_far = so_far.plus(run.run_id, result)
                 else:
-                    publish(made, folder / run.run_id)
-                    now = now.plus(run.run_id, made.summary)
-                progress(now)
+                    publish(result, folder / run.run_id)
+                    so_far = so_far.plus(run.run_id, result.summary)
+                progress(so_far)
     except BaseException:
         with suppress(InputError):  # the first trouble is the one to tell
             manifest.write(folder, entries.values())
         raise
     manifest.write(folder, entries.values())
-    return now
+    return so_far

@@ -10,8 +10,9 @@ from rotctl.config import Config
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, collect
 from rotctl.results.code import code_version
-from rotctl.run import Summary, stored
+from rotctl.run_folder import open_published
 from rotctl.scenario import model_of, run_id
+from rotctl.summary import Summary
 from rotctl.sweep.points import Point
 
 
@@ -75,30 +76,30 @@ def plan(
     Raises:
         InputError: a damaged log cannot be set aside.
     """
-    found, this_code = Plan(), code_version(collect())
+    sorted_out, this_code = Plan(), code_version(collect())
     for run in runs:
         path = folder / run.run_id / LOG_NAME
         if not os.path.lexists(path):
-            found.left.append(run)
+            sorted_out.left.append(run)
             progress()
             continue
         try:
-            log = stored(path.parent, run.run_id)
+            log = open_published(path.parent, run.run_id)
             code, outcome = code_version(log.attributes), log.outcome
         except LogError as error:
             _set_aside(path)
-            found.replaced.append(f"{error}; kept as {path.name}.corrupt")
-            found.left.append(run)
+            sorted_out.replaced.append(f"{error}; kept as {path.name}.corrupt")
+            sorted_out.left.append(run)
         else:
             if code != this_code and strict:
-                found.replaced.append(f"{path}: made by {code}")
-                found.left.append(run)
+                sorted_out.replaced.append(f"{path}: made by {code}")
+                sorted_out.left.append(run)
             else:
-                found.done[run.run_id] = outcome
+                sorted_out.done[run.run_id] = outcome
                 if code != this_code:
-                    found.other_code[code] = found.other_code.get(code, 0) + 1
+                    sorted_out.other_code[code] = sorted_out.other_code.get(code, 0) + 1
         progress()
-    return found
+    return sorted_out
 
 
 def _set_aside(path: Path) -> None:
