@@ -197,7 +197,7 @@ def test_import_says_what_it_made_of_the_file(captured, tmp_path, cli, monkeypat
 
 
 def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
-    monkeypatch.setattr("rotctl.clip_commands.CLIP_FRAMES", 2)
+    monkeypatch.setattr("rotctl.commands.clips.CLIP_FRAMES", 2)
     out = tmp_path / "clip.yaml"
     keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
     for command, file in (("import-motion", captured), ("author-motion", keys)):

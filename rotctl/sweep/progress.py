@@ -20,7 +20,7 @@ def shown(total: int, before: int, quiet: bool) -> Iterator[Callable[[Tally], No
         quiet: write nothing.
     """
     if quiet:
-        yield lambda now: None
+        yield lambda tally: None
     elif sys.stderr.isatty():
         with _bar(total, before) as update:
             yield update
@@ -34,9 +34,9 @@ def _bar(total: int, before: int) -> Iterator[Callable[[Tally], None]]:
 
     with tqdm(total=total, initial=before, unit="run", smoothing=0.05, dynamic_ncols=True) as bar:
 
-        def update(now: Tally) -> None:
-            bar.set_postfix_str(_counts(now), refresh=False)
-            bar.update(now.count - bar.n)
+        def update(tally: Tally) -> None:
+            bar.set_postfix_str(_counts(tally), refresh=False)
+            bar.update(tally.count - bar.n)
 
         yield update
 
@@ -44,24 +44,25 @@ def _bar(total: int, before: int) -> Iterator[Callable[[Tally], None]]:
 def _lines(total: int, before: int) -> Callable[[Tally], None]:
     begin = last = time.monotonic()
 
-    def update(now: Tally) -> None:
+    def update(tally: Tally) -> None:
         nonlocal last
         moment = time.monotonic()
-        if moment - last < EVERY or now.count == before:
+        if moment - last < EVERY or tally.count == before:
             return
         last = moment
-        rate = (now.count - before) / (moment - begin)
-        left = (total - now.count) / rate
+        rate = (tally.count - before) / (moment - begin)
+        left = (total - tally.count) / rate
         sys.stderr.write(
-            f"{now.count}/{total} runs, {rate:.2g} run/s, {duration(left)} left, {_counts(now)}\n"
+            f"{tally.count}/{total} runs, {rate:.2g} run/s, {duration(left)} left, "
+            f"{_counts(tally)}\n"
         )
 
     return update
 
 
-def _counts(now: Tally) -> str:
-    broken = f", {len(now.broken)} failed to run" if now.broken else ""
-    return f"{now.succeeded} succeeded, {now.fell} did not{broken}"
+def _counts(tally: Tally) -> str:
+    broken = f", {len(tally.broken)} failed to run" if tally.broken else ""
+    return f"{tally.succeeded} succeeded, {tally.fell} did not{broken}"
 
 
 def duration(seconds: float) -> str:

@@ -51,20 +51,20 @@ def at_the_start(plan: Plan, folder: Path, where: str) -> str:
     return "\n".join(lines)
 
 
-def at_the_end(now: Tally, plan: Plan, folder: Path) -> str:
+def at_the_end(tally: Tally, plan: Plan, folder: Path) -> str:
     """The result in a line, and where to look next."""
     before = f", {len(plan.done)} of them were there before" if plan.done else ""
     return (
-        f"{now.count} runs: {now.succeeded} succeeded, {now.fell} did not, "
-        f"{len(now.broken)} failed to run{before}\n"
+        f"{tally.count} runs: {tally.succeeded} succeeded, {tally.fell} did not, "
+        f"{len(tally.broken)} failed to run{before}\n"
         f"next       rotctl summarise {shlex.quote(str(folder))}"
     )
 
 
-def failures(now: Tally, runs: list[Planned]) -> str:
+def failures(tally: Tally, runs: list[Planned]) -> str:
     """All runs without a result and why, one a line, in the order of the sweep."""
-    listed = [run for run in runs if run.run_id in now.broken]
-    lines = [f"  {run.run_id}  {_values(run)}: {now.broken[run.run_id]}" for run in listed]
+    listed = [run for run in runs if run.run_id in tally.broken]
+    lines = [f"  {run.run_id}  {_values(run)}: {tally.broken[run.run_id]}" for run in listed]
     count = f"{len(listed)} run{'s' * (len(listed) > 1)}"
     return "\n".join([f"{count} failed to run:", *lines])
 

@@ -1,0 +1,159 @@
+"""One run and its config: `run`, `list`, `show`, `bench`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
+from rotctl.commands.bars import bar
+from rotctl.errors import InputError
+from rotctl.wording import one_line, readable
+
+
+def add_run(commands: Commands) -> None:
+    """Add `run`."""
+    command = commands.add_parser(
+        "run",
+        help="simulate one run and log it",
+        description="Simulate one run into OUT/<run id>/run.h5 and summary.json. The run id is "
+        "a hash of the config: a run that is already there is reported, not redone.",
+    )
+    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument(
+        "--out", type=folder_name, default=Path("runs"), help="folder for runs [%(default)s]"
+    )
+    command.add_argument(
+        "--again",
+        type=Path,
+        metavar="RUN.h5",
+        help="the config of that log, instead of KEY=VALUE (rotctl verify compares, too)",
+    )
+    command.add_argument(
+        "--json", action="store_true", help="print the summary row as JSON on stdout"
+    )
+    command.add_argument("--quiet", action="store_true", help="no progress, no notices")
+    command.add_argument("--force", action="store_true", help="redo a run that is already there")
+    command.add_argument(
+        "--filmstrip", action="store_true", help="also draw filmstrip.png beside it"
+    )
+    command.set_defaults(command=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Simulate one run and say how it went."""
+    from rotctl.config import load, recorded
+    from rotctl.log import LOG_NAME, RunLog
+    from rotctl.run import run
+
+    if arguments.again is None:
+        config = load(arguments.overrides)
+    elif arguments.overrides:
+        raise InputError(f"--again repeats a run as it was: leave out {arguments.overrides[0]!r}")
+    else:
+        config = recorded(RunLog.open(log_file(arguments.again)))
+    steps = round(config.duration * config.controller.rate)
+    what = f"{config.behaviour.name} seed {config.seed}"
+    with bar(what, "step", steps, hidden=arguments.quiet) as shown:
+        result = run(config, arguments.out, arguments.force, shown.update)
+    notices = [result.notice]
+    if result.already_there:
+        notices.append(f"already there, not redone (--force redoes it): {result.folder}")
+    if result.replaced:
+        notices.append(f"simulated again, the log there could not be used: {result.replaced}")
+    for notice in filter(None, notices if not arguments.quiet else []):
+        print(one_line(notice), file=sys.stderr)
+    picture = _filmstrip_beside(result.folder / LOG_NAME) if arguments.filmstrip else ""
+    if arguments.json:
+        import json
+
+        print(json.dumps(result.summary))
+    elif not arguments.quiet:
+        print(readable(result.summary))
+        print(f"log        {result.folder / LOG_NAME}")
+        if picture:
+            print(f"filmstrip  {picture}")
+    return 1 if result.broke_down else 0
+
+
+def _filmstrip_beside(log: Path) -> str:
+    """Draw a filmstrip if this machine can; say why not otherwise."""
+    from rotctl.log import RunLog
+    from rotctl.report.filmstrip import filmstrip
+
+    out = log.with_name("filmstrip.png")
+    try:
+        filmstrip(RunLog.open(log), out)
+    except InputError as error:
+        print(f"rotctl: no filmstrip: {error}", file=sys.stderr)
+        return ""
+    return str(out)
+
+
+def add_list(commands: Commands) -> None:
+    """Add `list`."""
+    command = commands.add_parser(
+        "list",
+        help="config groups and their choices",
+        description="List the config groups and the choices of each. Choose with GROUP=CHOICE, "
+        "as in: rotctl run start=rest",
+    )
+    command.set_defaults(command=list_choices)
+
+
+def list_choices(arguments: argparse.Namespace) -> int:
+    """List config groups and their choices."""
+    from rotctl.listing import groups
+
+    for group, choices in groups().items():
+        print(group)
+        width = max(map(len, choices))
+        for choice, description in choices.items():
+            print(f"  {choice:{width}}  {description}".rstrip())
+    print("\nchoose with GROUP=CHOICE, change a value with KEY=VALUE; see: rotctl show")
+    return 0
+
+
+def add_show(commands: Commands) -> None:
+    """Add `show`."""
+    command = commands.add_parser(
+        "show",
+        help="print the composed config as YAML",
+        description="Print the config that a run with these overrides gets, as YAML: every key "
+        "there can be overridden, as in: rotctl show controller.pose.damping=40",
+    )
+    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.set_defaults(command=show)
+
+
+def show(arguments: argparse.Namespace) -> int:
+    """Print the composed config."""
+    from rotctl.config import load, to_yaml
+
+    print(to_yaml(load(arguments.overrides)), end="")
+    return 0
+
+
+def add_bench(commands: Commands) -> None:
+    """Add `bench`."""
+    command = commands.add_parser(
+        "bench",
+        help="where the time goes",
+        description="Measure where the time goes: a control step, whole processes, solvers, "
+        "contacts and hinges, sweeps. Takes some minutes.",
+    )
+    command.add_argument(
+        "--repeats", type=int, default=5, help="median over this many [%(default)s]"
+    )
+    command.add_argument("--plot", type=Path, metavar="OUT.svg", help="plot cost against contacts")
+    command.set_defaults(command=bench)
+
+
+def bench(arguments: argparse.Namespace) -> int:
+    """Measure where the time goes."""
+    from rotctl.bench import bench
+
+    if arguments.repeats < 1:
+        raise InputError(f"--repeats={arguments.repeats}: must be at least 1")
+    for table in bench(arguments.repeats, arguments.plot):
+        print(table, end="\n\n", flush=True)
+    return 0

@@ -1,0 +1,202 @@
+"""Many runs: `sweep`, `summarise`, `report`, `tune`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name
+from rotctl.commands.bars import bar, following
+from rotctl.errors import InputError
+from rotctl.wording import one_line, printable
+
+
+def add_sweep(commands: Commands) -> None:
+    """Add `sweep`."""
+    command = commands.add_parser(
+        "sweep",
+        help="simulate many runs, and go on where it ended",
+        description="Simulate every point of a grid into DIR/<run id>/run.h5, in Hydra's sweep "
+        "syntax: a=x,y  'seed=range(0,100)'  'start=glob(*)'  or +experiment=NAME. Runs that are "
+        "there are not redone, so that the same command goes on where it was cut off.",
+    )
+    command.add_argument("overrides", nargs="*", metavar="KEY=VALUES", help=OVERRIDES_HELP)
+    command.add_argument(
+        "--out", type=folder_name, required=True, metavar="DIR", help="folder of runs"
+    )
+    command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
+    command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
+    command.add_argument(
+        "--retries", type=int, default=2, help="for a run whose worker died [%(default)s]"
+    )
+    command.add_argument("--dry-run", action="store_true", help="only say what there is to do")
+    command.add_argument("--strict", action="store_true", help="redo what other code has made")
+    command.add_argument("--quiet", action="store_true", help="no progress, no notices")
+    command.set_defaults(command=sweep, interrupted="the same command does what is left")
+
+
+def sweep(arguments: argparse.Namespace) -> int:
+    """Simulate a grid of runs, or what is left of it."""
+    from contextlib import closing
+
+    from tqdm import tqdm
+
+    from rotctl.results import experiments
+    from rotctl.sweep.launch import launch
+    from rotctl.sweep.lock import locked
+    from rotctl.sweep.plan import plan, planned
+    from rotctl.sweep.points import points
+    from rotctl.sweep.progress import shown
+    from rotctl.sweep.said import at_the_end, at_the_start, failures, without_running
+    from rotctl.sweep.workers import make_engine
+
+    if arguments.retries < 0:
+        raise InputError(f"--retries={arguments.retries}: must be at least 0")
+    runs = planned(points(experiments.matrix(arguments.overrides)))
+    with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
+        if arguments.dry_run:
+            print(without_running(runs, arguments.out, engine.workers))
+            return 0
+        with locked(arguments.out):
+            if experiment := experiments.named(arguments.overrides):
+                experiments.copy_into(arguments.out, experiment)
+            watched = None if not arguments.quiet else True  # None: only on a terminal
+            with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
+                there = plan(runs, arguments.out, arguments.strict, looking.update)
+            if not arguments.quiet:
+                print(at_the_start(there, arguments.out, engine.where), file=sys.stderr, flush=True)
+            with shown(len(runs), len(there.done), arguments.quiet) as progress:
+                tally = launch(there, runs, arguments.out, engine, arguments.retries, progress)
+    if tally.broken:
+        print(printable(failures(tally, runs)), file=sys.stderr)
+    if not arguments.quiet:
+        print(at_the_end(tally, there, arguments.out))
+    return 1 if tally.broken else 0
+
+
+def add_summarise(commands: Commands) -> None:
+    """Add `summarise`."""
+    command = commands.add_parser(
+        "summarise",
+        help="tables of many runs",
+        description="Tabulate all runs below DIR, one row a run, into summary.csv (and "
+        "summary.parquet, if pyarrow is there), and print success rates with 95 %% intervals and "
+        "the quartiles of the metrics by group, also in groups.csv.",
+    )
+    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument(
+        "--by", metavar="KEY,KEY", help="columns to group by [the overridden keys but the seed]"
+    )
+    command.add_argument(
+        "--mixed", action="store_true", help="average over runs of different code all the same"
+    )
+    command.set_defaults(command=summarise)
+
+
+def summarise(arguments: argparse.Namespace) -> int:
+    """Make tables of the runs below a folder."""
+    from rotctl.results.groups import grouped, markdown, written
+    from rotctl.results.table import table
+
+    found = table(arguments.folder)
+    groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
+    print(printable(markdown(groups)), end="\n\n")
+    for path in written(arguments.folder, found.rows, groups.rows):
+        print(path)
+    for note in [*found.notes, *groups.notes]:
+        print(one_line(note), file=sys.stderr)
+    return 0
+
+
+def add_report(commands: Commands) -> None:
+    """Add `report`."""
+    command = commands.add_parser(
+        "report",
+        help="pages on many runs: claims with verdicts, pictures, replays",
+        description="Make a static folder of pages out of the runs below DIR, a sweep or several: "
+        "the claims of their experiments with verdicts, pictures and replays of the median and "
+        "the worst run of each row, charts, and where it all comes from. Also claims.csv, "
+        "junit.xml and summary.md. Nothing is simulated again.",
+    )
+    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument(
+        "--out", type=folder_name, default=Path("site"), help="folder for the pages [%(default)s]"
+    )
+    command.add_argument(
+        "--against",
+        type=Path,
+        metavar="OLD",
+        help="an earlier report: print which verdicts changed, exit 1 if one got worse",
+    )
+    command.set_defaults(command=report, interrupted="an unfinished picture is not written")
+
+
+def report(arguments: argparse.Namespace) -> int:
+    """Make the pages on many runs, and compare their claims with those of an earlier report."""
+    from rotctl.report.site import against
+    from rotctl.report.site.build import report
+
+    # Before it is replaced, should it be the same folder.
+    old = against.read(arguments.against) if arguments.against else None
+    with bar("report", "part") as shown:
+        claims = report(arguments.folder, arguments.out, following(shown))
+    print(arguments.out / "index.html")
+    if old is None:
+        return 0
+    found = against.changes(old, claims)
+    print(found.text)
+    return 1 if found.worse else 0
+
+
+def add_tune(commands: Commands) -> None:
+    """Add `tune`."""
+    command = commands.add_parser(
+        "tune",
+        help="search for poses or gains over many starts",
+        description="Search what conf/tune/NAME.yaml declares, in whole generations, each on "
+        "fresh training starts. The same command again goes on where the last one ended.",
+    )
+    command.add_argument("name", metavar="NAME", help="a space in conf/tune/, or a .yaml file")
+    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument(
+        "--out",
+        type=folder_name,
+        required=True,
+        metavar="DIR",
+        help="holds the search and its result",
+    )
+    budget = command.add_mutually_exclusive_group()
+    budget.add_argument("--trials", type=int, metavar="N", help="candidates in all [the space's]")
+    budget.add_argument("--minutes", type=float, metavar="M", help="time for this call instead")
+    command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
+    command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
+    command.add_argument("--sampler", choices=("cmaes", "tpe"), help="instead of the space's")
+    command.add_argument("--seed", type=int, default=0, metavar="S", help="of the search [0]")
+    command.set_defaults(command=tune, interrupted="the same command does what is left")
+
+
+def tune(arguments: argparse.Namespace) -> int:
+    """Search for config values."""
+    from contextlib import closing
+
+    from rotctl.sweep.workers import make_engine
+    from rotctl.tune import result
+    from rotctl.tune.search import Watch, prepare, tune
+
+    search, budget = prepare(
+        arguments.name,
+        arguments.overrides,
+        arguments.seed,
+        arguments.sampler,
+        arguments.trials,
+        arguments.minutes,
+    )
+    with (
+        closing(make_engine(arguments.jobs, arguments.scheduler)) as engine,
+        bar(search.space.name, "run") as shown,
+    ):
+        watch = Watch(lambda text: shown.write(text, file=sys.stderr), shown.update)
+        found = tune(search, arguments.out, budget, engine, watch)
+    written = result.write(found, arguments.out)
+    print(result.comparison(found), *written, sep="\n")
+    print(result.how_to_judge(found, written, arguments.out))
+    return 0
