@@ -9,11 +9,11 @@ import pytest
 
 from rotctl.config import load
 from rotctl.tune.attempt import Attempt, attempt, hopeless
-from rotctl.tune.objective import LOST, Rolled, finished, overall, score
+from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
 from rotctl.tune.space import Objective, Stopping
 
 OBJECTIVE = Objective("mean", survival=0.6, progress=0.4, pace=0.65, drift=0.03, heading=0.001)
-PERFECT = Rolled(survived=10.0, wanted=10.0, revolutions=6.5, drift=0.0, heading=0.0)
+PERFECT = TrialRun(survived=10.0, wanted=10.0, revolutions=6.5, drift=0.0, heading=0.0)
 STOPPING = Stopping(stall_time=1.5, stall_progress=0.1, off_axis=70.0)
 
 

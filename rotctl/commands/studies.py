@@ -43,10 +43,10 @@ def sweep(arguments: argparse.Namespace) -> int:
     from rotctl.results import experiments
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
+    from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
     from rotctl.sweep.plan import plan, planned
     from rotctl.sweep.points import points
     from rotctl.sweep.progress import shown
-    from rotctl.sweep.said import at_the_end, at_the_start, failures, without_running
     from rotctl.sweep.workers import make_engine
 
     if arguments.retries < 0:
@@ -195,8 +195,8 @@ def tune(arguments: argparse.Namespace) -> int:
         bar(search.space.name, "run") as shown,
     ):
         watch = Watch(lambda text: shown.write(text, file=sys.stderr), shown.update)
-        found = tune(search, arguments.out, budget, engine, watch)
-    written = result.write(found, arguments.out)
-    print(result.comparison(found), *written, sep="\n")
-    print(result.how_to_judge(found, written, arguments.out))
+        outcome = tune(search, arguments.out, budget, engine, watch)
+    written = result.write(outcome, arguments.out)
+    print(result.comparison(outcome), *written, sep="\n")
+    print(result.how_to_judge(outcome, written, arguments.out))
     return 0

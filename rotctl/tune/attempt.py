@@ -12,7 +12,7 @@ from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.simulation.episode import Moment
-from rotctl.tune.objective import Rolled
+from rotctl.tune.objective import TrialRun
 from rotctl.tune.space import Stopping
 
 Stop = Callable[[Moment], bool]
@@ -26,7 +26,7 @@ class Attempt:
     stopping: Stopping
 
 
-def attempt(item: Attempt) -> Rolled:
+def attempt(item: Attempt) -> TrialRun:
     """Simulate one run in memory.
 
     Raises:
@@ -41,7 +41,7 @@ def attempt(item: Attempt) -> Rolled:
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
     metrics = measure(buffer.arrays(), criteria, commanded, period)
-    return Rolled(
+    return TrialRun(
         survived=metrics.duration,
         wanted=config.duration,
         revolutions=metrics.revolutions,

@@ -4,16 +4,13 @@ A trial's score is the mean of few chaotic runs: the best of hundreds is mostly 
 mean of the distribution is not.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
-from rotctl.sweep.engines import Engine
+from rotctl.tune.batches import Evaluator
 from rotctl.tune.history import Trial
-from rotctl.tune.objective import Rolled, overall
-from rotctl.tune.space import Space
-from rotctl.tune.trying import tried
-from rotctl.tune.values import Values, configs
+from rotctl.tune.objective import TrialRun, overall
+from rotctl.tune.values import Values
 
 BEST = 3  # trials that are tried again
 DIGITS = 4  # of a result's numbers
@@ -32,24 +29,20 @@ class Candidate:
 
     name: str
     values: Values
-    runs: list[Rolled]
+    runs: list[TrialRun]
     score: float
 
 
 def choose(
-    space: Space,
-    data: Sequence[Any],
+    evaluator: Evaluator,
     start: Values,
     trials: Sequence[Trial],
     mean: Values | None,
     seeds: range,
-    engine: Engine,
-    tick: Callable[[], object],
 ) -> tuple[Candidate, list[Candidate]]:
     """Try the last candidates.
 
     Args:
-        data: the configs that candidates are put into.
         mean: of the distribution; None if the search has none.
         seeds: for the runs of each.
 
@@ -62,11 +55,10 @@ def choose(
     for trial in sorted(trials, key=lambda trial: -trial.score)[:BEST]:
         rivals[f"generation {trial.generation}, candidate {trial.index}"] = trial.values
     rivals = {name: _rounded(values) for name, values in rivals.items()}
-    batches = [configs(data, values, seeds) for values in rivals.values()]
-    found = tried(engine, batches, space.stopping, tick)
+    objective, tried = evaluator.space.objective, evaluator.runs(list(rivals.values()), seeds)
     first, *others = (
-        Candidate(name, values, runs, overall(runs, space.objective))
-        for (name, values), (runs, _) in zip(rivals.items(), found, strict=True)
+        Candidate(name, values, runs, overall(runs, objective))
+        for (name, values), (runs, _) in zip(rivals.items(), tried, strict=True)
     )
     return first, sorted(others, key=lambda candidate: -candidate.score)
 

@@ -70,11 +70,11 @@ class History:
 
     def trials(self) -> list[Trial]:
         """All trials, by generation and index."""
-        found = (
+        trials = (
             Trial(values=dict(t.params), score=float(t.value or 0.0), **t.user_attrs)
             for t in self._study.get_trials(deepcopy=False)
         )
-        return sorted(found, key=lambda trial: (trial.generation, trial.index))
+        return sorted(trials, key=lambda trial: (trial.generation, trial.index))
 
 
 def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> History:

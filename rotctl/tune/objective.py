@@ -8,7 +8,7 @@ from rotctl.tune.space import Objective
 
 
 @dataclass(frozen=True)
-class Rolled:
+class TrialRun:
     """How one run went.
 
     Attributes:
@@ -31,10 +31,10 @@ class Rolled:
         return self.survived >= self.wanted - 1e-6
 
 
-LOST = Rolled(0.0, 1.0, 0.0, 0.0, 0.0)  # a run whose worker died every time: worth nothing
+LOST = TrialRun(0.0, 1.0, 0.0, 0.0, 0.0)  # a run whose worker died every time: worth nothing
 
 
-def score(run: Rolled, objective: Objective) -> float:
+def score(run: TrialRun, objective: Objective) -> float:
     """What a run is worth; a perfect one `objective.survival + objective.progress`.
 
     A number that a broken-down run does not have counts for nothing.
@@ -49,12 +49,12 @@ def score(run: Rolled, objective: Objective) -> float:
     return value if math.isfinite(value) else 0.0
 
 
-def overall(runs: Sequence[Rolled], objective: Objective) -> float:
+def overall(runs: Sequence[TrialRun], objective: Objective) -> float:
     """The score of a candidate over its runs."""
     scores = [score(run, objective) for run in runs]
     return min(scores) if objective.over_runs == "worst" else math.fsum(scores) / len(scores)
 
 
-def finished(runs: Sequence[Rolled]) -> float:
+def finished(runs: Sequence[TrialRun]) -> float:
     """The fraction of runs that were not cut."""
     return sum(run.to_the_end for run in runs) / len(runs)

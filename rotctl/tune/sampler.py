@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from optuna.distributions import BaseDistribution
 
 Scored = tuple[Values, float]
-Told = Sequence[Sequence[Scored]]  # finished generations, each complete and in order
+Generations = Sequence[Sequence[Scored]]  # finished generations, each complete and in order
 EXTRA = "rotctl tune needs Optuna and cmaes, which are not installed: pip install 'rotctl[tune]'"
 
 
@@ -38,7 +38,7 @@ def need_extra() -> None:
         raise InputError(EXTRA) from None
 
 
-def propose(space: Space, start: Values, told: Told, seed: int) -> list[Values]:
+def propose(space: Space, start: Values, told: Generations, seed: int) -> list[Values]:
     """The candidates of the generation after those told."""
     drawn = int(np.random.SeedSequence([seed, len(told)]).generate_state(1)[0])
     if space.sampler.name == "tpe":
@@ -48,14 +48,14 @@ def propose(space: Space, start: Values, told: Told, seed: int) -> list[Values]:
     return [_values(space, normal.ask()) for _ in range(space.sampler.population)]
 
 
-def centre(space: Space, start: Values, told: Told) -> Values | None:
+def centre(space: Space, start: Values, told: Generations) -> Values | None:
     """The mean of the distribution that the search has come to; None if it has none."""
     if space.sampler.name != "cmaes":
         return None
     return _values(space, _normal(space, start, told).mean.clip(0.0, 1.0))
 
 
-def _normal(space: Space, start: Values, told: Told) -> "SepCMA":
+def _normal(space: Space, start: Values, told: Generations) -> "SepCMA":
     """The distribution after all that was told, over the unit cube.
 
     Separable: with few candidates of noisy score, a variance for each number is all that can
@@ -74,12 +74,12 @@ def _normal(space: Space, start: Values, told: Told) -> "SepCMA":
     return normal
 
 
-def _tpe(space: Space, start: Values, told: Told, seed: int) -> list[Values]:
+def _tpe(space: Space, start: Values, told: Generations, seed: int) -> list[Values]:
     import optuna
     from optuna.trial import create_trial
 
     optuna.logging.set_verbosity(optuna.logging.WARNING)
-    found = distributions(space)
+    ranges = distributions(space)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
         sampler = optuna.samplers.TPESampler(
@@ -91,11 +91,11 @@ def _tpe(space: Space, start: Values, told: Told, seed: int) -> list[Values]:
     study = optuna.create_study(direction="maximize", sampler=sampler)
     for generation in told:
         study.add_trials(
-            [create_trial(params=v, distributions=found, value=score) for v, score in generation]
+            [create_trial(params=v, distributions=ranges, value=score) for v, score in generation]
         )
     if not told:
         study.enqueue_trial(start)
-    return [dict(study.ask(found).params) for _ in range(space.sampler.population)]
+    return [dict(study.ask(ranges).params) for _ in range(space.sampler.population)]
 
 
 def distributions(space: Space) -> "dict[str, BaseDistribution]":

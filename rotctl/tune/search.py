@@ -12,15 +12,14 @@ from typing import Any
 from rotctl.errors import InputError
 from rotctl.sweep.engines import Engine
 from rotctl.sweep.lock import locked
+from rotctl.tune.batches import Evaluator
 from rotctl.tune.choice import BEST, Candidate, choose
 from rotctl.tune.history import History, Trial, by_generation, open_history
 from rotctl.tune.objective import finished, overall
-from rotctl.tune.sampler import Told, centre, need_extra, propose
+from rotctl.tune.sampler import Generations, centre, need_extra, propose
 from rotctl.tune.space import SamplerName, Space, load_space
-from rotctl.tune.trying import tried
 from rotctl.tune.values import (
     Values,
-    configs,
     final_seeds,
     start_values,
     training_seeds,
@@ -61,7 +60,7 @@ class Watch:
 
 
 @dataclass(frozen=True)
-class Found:
+class SearchResult:
     """What a search came to.
 
     Attributes:
@@ -110,7 +109,9 @@ def prepare(
     return Search(space, overrides, seed), Budget(trials, minutes)
 
 
-def tune(search: Search, folder: Path, budget: Budget, engine: Engine, watch: Watch) -> Found:
+def tune(
+    search: Search, folder: Path, budget: Budget, engine: Engine, watch: Watch
+) -> SearchResult:
     """Search, or go on with the search in `folder`.
 
     Raises:
@@ -122,23 +123,23 @@ def tune(search: Search, folder: Path, budget: Budget, engine: Engine, watch: Wa
     start = start_values(space, data[0])
     with locked(folder):
         history = open_history(folder, space, _identity(search, data))
-        done = _searched(search, data, start, history, budget, engine, watch)
+        evaluator = Evaluator(space, data, engine, watch.tick)
+        done = _searched(search, start, evaluator, history, budget, watch.line)
         watch.line(f"choosing between the last candidates, on {space.runs.final} more starts")
-        mean = centre(space, start, _told(done))
+        mean = centre(space, start, _scored(done))
         trials = [trial for generation in done for trial in generation]
         seeds = final_seeds(space, search.seed)
-        first, others = choose(space, data, start, trials, mean, seeds, engine, watch.tick)
-    return Found(search, data[0], trials, first, others)
+        first, others = choose(evaluator, start, trials, mean, seeds)
+    return SearchResult(search, data[0], trials, first, others)
 
 
 def _searched(
     search: Search,
-    data: list[Any],
     start: Values,
+    evaluator: Evaluator,
     history: History,
     budget: Budget,
-    engine: Engine,
-    watch: Watch,
+    line: Callable[[str], object],
 ) -> list[list[Trial]]:
     """Generations until the budget is spent."""
     space = search.space
@@ -148,35 +149,27 @@ def _searched(
     final = (BEST + 2) * space.runs.final / (size * space.runs.seeds)
     begin, longest = time.monotonic(), 0.0
     while True:
-        done, begun = by_generation(history.trials(), size)
+        done, _ = by_generation(history.trials(), size)
         left = 60.0 * budget.minutes - (time.monotonic() - begin) if budget.minutes else inf
         if len(done) >= wanted or (done and left < (1.0 + final) * longest):
             return done
         before = time.monotonic()
-        _generation(search, data, start, done, begun, history, engine, watch.tick)
+        _generation(search, start, evaluator, history)
         took = time.monotonic() - before
         longest = max(longest, took)
         more = (wanted - len(done) - 1 + final) * took
-        watch.line(_line(history.trials(), len(done), min(left - took, more)))
+        line(_line(history.trials(), len(done), min(left - took, more)))
 
 
-def _generation(
-    search: Search,
-    data: list[Any],
-    start: Values,
-    done: list[list[Trial]],
-    begun: list[Trial],
-    history: History,
-    engine: Engine,
-    tick: Callable[[], object],
-) -> None:
-    """Try the candidates of the next generation, less those `begun` before an interruption."""
-    space, number, began = search.space, len(done), time.monotonic()
-    points = propose(space, start, _told(done), search.seed)
+def _generation(search: Search, start: Values, evaluator: Evaluator, history: History) -> None:
+    """Try the candidates of the next generation, less those tried before an interruption."""
+    space, begin = search.space, time.monotonic()
+    done, begun = by_generation(history.trials(), space.sampler.population)
+    number = len(done)
+    points = propose(space, start, _scored(done), search.seed)
     seeds = training_seeds(space, search.seed, number)
     left = sorted(set(range(len(points))) - {trial.index for trial in begun})
-    batches = [configs(data, points[i], seeds) for i in left]
-    with closing(tried(engine, batches, space.stopping, tick)) as results:
+    with closing(evaluator.runs([points[i] for i in left], seeds)) as results:
         for i, (runs, lost) in zip(left, results, strict=True):
             history.add(
                 Trial(
@@ -186,12 +179,12 @@ def _generation(
                     score=overall(runs, space.objective),
                     finished=finished(runs),
                     lost=lost,
-                    seconds=time.monotonic() - began,
+                    seconds=time.monotonic() - begin,
                 )
             )
 
 
-def _told(done: list[list[Trial]]) -> Told:
+def _scored(done: list[list[Trial]]) -> Generations:
     return [[(trial.values, trial.score) for trial in generation] for generation in done]
 
 

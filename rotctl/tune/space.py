@@ -12,7 +12,7 @@ from rotctl.checked import checked
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
-from rotctl.tune.braces import MOST, expanded
+from rotctl.tune.key_braces import MOST, expanded
 
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
 # An index of three digits is plenty: a list is made as long as that.

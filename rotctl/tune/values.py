@@ -20,16 +20,16 @@ def get(data: Any, key: str) -> float:
     Raises:
         InputError: there is none; the line names the valid keys there.
     """
-    found, parts = data, way(key)
+    value, parts = data, way(key)
     for depth, part in enumerate(parts):
-        inner = member(found, part)
+        inner = member(value, part)
         if inner is NOTHING:
-            where, valid = dotted(parts[:depth]) or "it", _members(found)
+            where, valid = dotted(parts[:depth]) or "it", _members(value)
             raise InputError(f"parameter {key}: not in the config; valid under {where}: {valid}")
-        found = inner
-    if isinstance(found, bool) or not isinstance(found, int | float):
-        raise InputError(f"parameter {key}: is {_members(found)}, no single number")
-    return float(found)
+        value = inner
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"parameter {key}: is {_members(value)}, no single number")
+    return float(value)
 
 
 def put(data: Any, values: Mapping[str, float]) -> Any:
@@ -46,18 +46,18 @@ def start_values(space: Space, data: Any) -> Values:
         InputError: a key is not in the config, a range is not allowed there, or the start is
             outside its range.
     """
-    found = {}
+    start = {}
     for parameter in space.parameters:
         key, low, high = parameter.key, parameter.low, parameter.high
-        found[key] = get(data, key)
-        if not low <= found[key] <= high:
+        start[key] = get(data, key)
+        if not low <= start[key] <= high:
             raise InputError(
-                f"parameter {key}: starts at {found[key]:g} {parameter.unit}, "
+                f"parameter {key}: starts at {start[key]:g} {parameter.unit}, "
                 f"outside its range {low:g} to {high:g}"
             )
         for bound in (low, high):
             check(put(data, {key: bound}))
-    return found
+    return start
 
 
 def variations(space: Space, overrides: list[str]) -> list[Any]:
