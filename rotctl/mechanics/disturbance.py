@@ -14,7 +14,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
-from rotctl.mechanics.model import Model, body_id, is_character
+from rotctl.mechanics.model import ROOT_BODY, Model, body_id, is_character
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, NonNegative, Positive, Range
 
@@ -130,7 +130,7 @@ class OnePush:
         overlap = min(data.time + period, self.end) - max(data.time, self.begin)
         force = self.force * (max(overlap, 0.0) / period)
         data.xfrc_applied[self.body, :3] = force
-        lever = data.xipos[self.body] - data.subtree_com[1]
+        lever = data.xipos[self.body] - data.subtree_com[ROOT_BODY]
         return np.concatenate((force, cross(lever, force)))
 
 
@@ -168,5 +168,5 @@ class Air:
             data.xfrc_applied[body, :3] += force
             data.xfrc_applied[body, 3:] += cross(data.geom_xpos[geom] - data.xipos[body], force)
             total[:3] += force
-            total[3:] += cross(data.geom_xpos[geom] - data.subtree_com[1], force)
+            total[3:] += cross(data.geom_xpos[geom] - data.subtree_com[ROOT_BODY], force)
         return total

@@ -20,6 +20,7 @@ from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
 
+ROOT_BODY = 1  # MuJoCo's id: the character is the first tree
 ROOT_DOFS = 6
 SIDES = ("_l", "_r")  # how names of limbs end
 TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it
@@ -140,7 +141,7 @@ def build(
         torque_limit=mj.actuator_ctrlrange[:, 1].copy(),
         armature=mj.dof_armature[joints].copy(),
         diagonal=(mj.M_rowadr + mj.M_rownnz - 1).astype(np.int64),
-        mass=float(mj.body_subtreemass[1]),
+        mass=float(mj.body_subtreemass[ROOT_BODY]),
         gravity=mj.opt.gravity.copy(),
         trunk=trunk,
         trunk_weights=(mj.body_mass[trunk] / mj.body_mass[trunk].sum())[:, None],
@@ -188,7 +189,7 @@ def _check(mj: mujoco.MjModel, character: Character) -> None:
 
 def is_character(mj: mujoco.MjModel) -> NDArray[np.bool_]:
     """(nbody,) which bodies are the character's: those of the first tree."""
-    return np.asarray(mj.body_rootid == 1)
+    return np.asarray(mj.body_rootid == ROOT_BODY)
 
 
 def lowest_and_highest(

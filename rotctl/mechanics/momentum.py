@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from rotctl.linear import product, solve
+from rotctl.mechanics.model import ROOT_BODY
 from rotctl.rotations import Array, cross
 
 
@@ -43,16 +44,16 @@ def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
     """
     generalised = np.empty(mj.nv)
     mujoco.mj_mulM(mj, data, generalised, data.qvel)
-    rotation = data.xmat[1].reshape(3, 3).copy()
-    com = data.subtree_com[1].copy()
+    rotation = data.xmat[ROOT_BODY].reshape(3, 3).copy()
+    com = data.subtree_com[ROOT_BODY].copy()
     offset = com - data.qpos[:3]
     linear = generalised[:3]
     angular = product(rotation, generalised[3:6]) - cross(offset, linear)
-    xx, yy, zz, xy, xz, yz = data.crb[1, :6]
+    xx, yy, zz, xy, xz, yz = data.crb[ROOT_BODY, :6]
     inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return Momentum(
         com=com,
-        com_velocity=linear / mj.body_subtreemass[1],
+        com_velocity=linear / mj.body_subtreemass[ROOT_BODY],
         linear=linear,
         angular=angular,
         inertia=inertia,

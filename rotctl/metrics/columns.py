@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from rotctl.linear import product
 
+ALL_FAILED = 2  # of the dataset solver/status
+
 
 class Arrays(Protocol):
     """Arrays by schema path: a `RunLog`, or those of a buffer."""
@@ -34,6 +36,11 @@ class Column:
 def floats(log: Arrays, name: str) -> NDArray[np.float64]:
     """An array of the log as floats."""
     return np.asarray(log[name], dtype=float)
+
+
+def solver_failures(log: Arrays) -> int:
+    """Control steps on which every solver failed."""
+    return int(np.count_nonzero(np.asarray(log["solver/status"]) == ALL_FAILED))
 
 
 def frame(log: Arrays) -> NDArray[np.float64]:

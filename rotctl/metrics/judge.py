@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from rotctl.metrics import orientation, rolling, standing
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
@@ -45,7 +45,7 @@ def judge(
         wanted: how long the run was to be [s].
     """
     steps = len(floats(log, "trajectory/time"))
-    failures = int(np.count_nonzero(np.asarray(log["solver/status"]) == 2))
+    failures = solver_failures(log)
     asked = dict(commanded)
     if isinstance(criteria, RollingCriteria):
         rolled = rolling.measure(log, criteria, commanded["angular_velocity_commanded"], period)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics.columns import Arrays, Column, floats, in_frame
+from rotctl.metrics.columns import Arrays, Column, floats, in_frame, solver_failures
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
@@ -201,7 +201,7 @@ def measure(
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
-        solver_failures=int(np.count_nonzero(np.asarray(log["solver/status"]) == 2)),
+        solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period),
     )
 

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import ROOT_BODY, Model
 from rotctl.motion.turning import Motion, qpos
 from rotctl.rotations import Array
 
@@ -51,7 +51,7 @@ def centres(model: Model, positions: Array) -> Array:
         data.qpos[:] = position
         mujoco.mj_kinematics(model.mj, data)
         mujoco.mj_comPos(model.mj, data)
-        found.append(data.subtree_com[1].copy())
+        found.append(data.subtree_com[ROOT_BODY].copy())
     return np.array(found)
 
 

@@ -4,13 +4,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
-from rotctl.report import gl, stored_model
+from rotctl.report import character, gl, stored_model
 from rotctl.report.rows import drawable, window
 from rotctl.report.signals import angular_rates, linear_rates, signals
 from rotctl.report.timeline import contact_bars
@@ -82,8 +80,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
 
     run = signals(log, rows)
     model = stored_model.load(log)
-    weight = model.body_subtreemass[1] * model.opt.gravity
-    pull = max(float(np.linalg.norm(weight)), 1.0)
+    pull = max(character.weight(model), 1.0)
     _heading(figure, log)
     grid = figure.add_gridspec(
         8, 6, left=0.1, right=0.935, top=0.922, bottom=0.045, hspace=0.7, wspace=1.3,
@@ -104,7 +101,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     draw.spin(axes(0, right, "Angular velocity \u03c9", "rev/s"), run)
     draw.in_plane(axes(1, left, "Excursion, in-plane", "rev"), run)
     draw.out_of_plane(axes(1, right, "Excursion, out-of-plane", "deg"), run)
-    linear, angular = linear_rates(log, rows, weight), angular_rates(log, rows)
+    linear, angular = linear_rates(log, rows, character.gravity(model)), angular_rates(log, rows)
     for i, axis in enumerate("xyz"):
         third = slice(2 * i, 2 * i + 2)
         name = {"y": f"{axis} (in-plane)"}.get(axis, axis)

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from rotctl.log import RunLog
-from rotctl.report import shapes, stored_model
+from rotctl.report import character, shapes, stored_model
 from rotctl.report.panels import panels
 from rotctl.report.rows import at_rate, drawable
 from rotctl.report.signals import Signals, signals
@@ -75,7 +75,7 @@ def _contacts(log: RunLog, model: mujoco.MjModel, rows: list[int]) -> Tree:
 
     Forces are in body weights.
     """
-    weight = max(float(model.body_subtreemass[1] * np.linalg.norm(model.opt.gravity)), 1.0)
+    weight = max(character.weight(model), 1.0)
     position = log["contacts/position"][rows]
     realised = log["contacts/force_realised"][rows] / weight
     predicted = log["contacts/force_predicted"][rows] / weight

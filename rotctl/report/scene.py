@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.report import gl, shapes
+from rotctl.report import character, gl, shapes
 from rotctl.rotations import Array
 
 Pixels = NDArray[np.uint8]
@@ -95,7 +95,7 @@ class Scene:
         self.shadows = shadows
         self.width, self.height = width, height
         self._data = mujoco.MjData(model)
-        self._limbs = model.body_rootid[model.geom_bodyid] == 1
+        self._limbs = character.is_limb(model)
         self._distance = 0.0
         self._centre = 0.0  # [m] height of the camera's target above the ground
         self._view_in = SIDE
@@ -125,7 +125,8 @@ class Scene:
         for i, state in enumerate(states):
             self._pose(state)
             least, most = self._outline()
-            ground = self.ground(0.5 * (least[0] + most[0]), self._data.subtree_com[1, 1])
+            y = float(character.centre_of_mass(self._data)[1])
+            ground = self.ground(0.5 * (least[0] + most[0]), y)
             halves[i] = 0.5 * (most - least)[:2]
             low, high = min(low, least[2] - ground), max(high, most[2] - ground)
         self.heading = heading
@@ -169,7 +170,7 @@ class Scene:
     @property
     def weight(self) -> float:
         """Of the character [N]."""
-        return float(self.model.body_subtreemass[1] * np.linalg.norm(self.model.opt.gravity))
+        return character.weight(self.model)
 
     def ground(self, x: float, y: float) -> float:
         """Height of the ground at world (x, y) [m], in the state drawn last; 0 beside it."""
@@ -203,7 +204,7 @@ class Scene:
     def _target(self) -> Array:
         """Above the ground, in the middle of the character; its height does not follow."""
         least, most = self._outline()
-        x, y = 0.5 * (least[0] + most[0]), self._data.subtree_com[1, 1]
+        x, y = 0.5 * (least[0] + most[0]), float(character.centre_of_mass(self._data)[1])
         return np.array([x, y, self.ground(x, y) + self._centre])
 
     def _add_discs(self) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from rotctl.report import character
 from rotctl.rotations import Array
 
 LEFT_SHADE = 0.62  # left limbs are darker, so that turns can be told apart
@@ -75,8 +76,8 @@ def poses(model: mujoco.MjModel, states: Array) -> Poses:
         mujoco.mj_comPos(model, data)
         found.positions[i] = data.xpos[1:]
         found.quaternions[i] = np.roll(data.xquat[1:], -1, axis=1)
-        found.com[i] = data.subtree_com[1]
-        found.ground[i] = height(model, data, *data.subtree_com[1, :2])
+        found.com[i] = character.centre_of_mass(data)
+        found.ground[i] = height(model, data, *found.com[i, :2])
     return found
 
 

@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
-from rotctl.mechanics.model import Model, is_character
+from rotctl.mechanics.model import ROOT_BODY, Model, is_character
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
 
@@ -150,13 +150,13 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     data.qpos[2] -= _clearance(model, data) + SINK
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
-    offset = data.xpos[1] - data.subtree_com[1]
+    offset = data.xpos[ROOT_BODY] - data.subtree_com[ROOT_BODY]
     x, y, z = start.velocity
     slope = atan(tan(model.ground.slope) * axes[0, 0])  # along the way
     velocity = product(np.array([x * cos(slope), y, z + x * sin(slope)]), axes)
     spin = product(start.angular_velocity, axes)
     data.qvel[:3] = velocity + cross(spin, offset)
-    data.qvel[3:6] = product(spin, data.xmat[1].reshape(3, 3))
+    data.qvel[3:6] = product(spin, data.xmat[ROOT_BODY].reshape(3, 3))
 
 
 def _clearance(model: Model, data: mujoco.MjData) -> float:
