@@ -8,8 +8,7 @@ groups cannot collide::
     buffer.solver.status[i] = 0
 """
 
-from dataclasses import dataclass, field, make_dataclass
-from functools import cache
+from dataclasses import dataclass, field
 from math import prod
 from typing import Any
 
@@ -17,6 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
+from rotctl.log.rows import (
+    CommandRows,
+    ContactRows,
+    DisturbanceRows,
+    ModelEntries,
+    SolverRows,
+    TrajectoryRows,
+    members,
+)
 from rotctl.log.schema import EVENT_BYTES, MAX_TOTAL_BYTES, SCHEMA, DatasetSpec
 
 _ALLOCATED = {
@@ -29,21 +37,17 @@ class TrajectoryBuffer:
     """The rows of one run.
 
     Attributes:
-        trajectory: arrays of the group ``trajectory``, one attribute each.
-        command: arrays of the group ``command``.
-        contacts: arrays of the group ``contacts``.
-        disturbance: arrays of the group ``disturbance``.
-        solver: arrays of the group ``solver``.
-        model: arrays of the group ``model``: one entry a joint, not one a step.
+        trajectory, command, contacts, disturbance, solver, model: arrays of the groups of that
+            name, one attribute each.
         events: (time [s], text) in the order of their arrival.
     """
 
-    trajectory: Any
-    command: Any
-    contacts: Any
-    disturbance: Any
-    solver: Any
-    model: Any
+    trajectory: TrajectoryRows
+    command: CommandRows
+    contacts: ContactRows
+    disturbance: DisturbanceRows
+    solver: SolverRows
+    model: ModelEntries
     events: list[tuple[float, str]] = field(default_factory=list)
 
     @classmethod
@@ -147,29 +151,14 @@ def _from_arrays(
     arrays: dict[str, NDArray[Any]], events: list[tuple[float, str]]
 ) -> TrajectoryBuffer:
     return TrajectoryBuffer(
-        trajectory=_record("trajectory", arrays),
-        command=_record("command", arrays),
-        contacts=_record("contacts", arrays),
-        disturbance=_record("disturbance", arrays),
-        solver=_record("solver", arrays),
-        model=_record("model", arrays),
+        trajectory=TrajectoryRows(**members("trajectory", arrays)),
+        command=CommandRows(**members("command", arrays)),
+        contacts=ContactRows(**members("contacts", arrays)),
+        disturbance=DisturbanceRows(**members("disturbance", arrays)),
+        solver=SolverRows(**members("solver", arrays)),
+        model=ModelEntries(**members("model", arrays)),
         events=events,
     )
-
-
-def _record(group: str, arrays: dict[str, NDArray[Any]]) -> Any:
-    """Frozen, so that ``buffer.trajectory.qpos = x`` (a forgotten index) is an error."""
-    members = {
-        name.partition("/")[2]: array
-        for name, array in arrays.items()
-        if name.startswith(f"{group}/")
-    }
-    return _record_type(group, tuple(members))(**members)
-
-
-@cache
-def _record_type(group: str, members: tuple[str, ...]) -> type[Any]:
-    return make_dataclass(group, members, frozen=True, slots=True)
 
 
 def _event_bytes(text: str) -> bytes:
