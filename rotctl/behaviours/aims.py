@@ -4,7 +4,7 @@ An aim fills a task's target, velocity and acceleration at one instant; which ki
 serves stands in its docstring.
 """
 
-from math import atan2, copysign
+from math import atan2
 from typing import Annotated, Literal
 
 import numpy as np
@@ -62,27 +62,26 @@ class Upright:
 
 @validated(frozen=True, config=STRICT)
 class Turn:
-    """Turn to the behaviour's target excursion about the axis to the left: spin.
+    """Turn to the behaviour's target excursion about left, and keep to that axis: spin.
 
     Attributes:
-        rate: fastest turn that is asked for [rad/s].
-        approach: the rate that is asked for is this times what is left [1/s].
+        most: of what is missing, that the spring is given at once [rad].
     """
 
     law: Literal["turn"]
-    rate: Positive
-    approach: Positive
+    most: Positive
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set target and velocity."""
+        """Set the target."""
         left = scene.axes[1]
-        rest = scene.target - scene.turned
-        across = _missing(scene, scene.excursion.angle)
-        task["target"][:3] = across - dot(left, across) * left + rest * left
-        task["velocity"] = copysign(min(abs(self.approach * rest), self.rate), rest) * left
+        missing = scene.target - scene.turned
+        across = _missing(scene, scene.first.angle)
+        task["target"][:3] = (
+            across - dot(left, across) * left + min(max(missing, -self.most), self.most) * left
+        )
 
 
 @validated(frozen=True, config=STRICT)

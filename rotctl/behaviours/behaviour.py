@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from rotctl.control import Command, ControllerSettings
-from rotctl.control.settings import TaskGains
+from rotctl.control.settings import PoseGains, TaskGains
 from rotctl.errors import InputError
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
@@ -91,3 +91,17 @@ def gains_of(control: ControllerSettings, tasks: tuple[str, ...]) -> dict[str, T
                 f"it has: {', '.join(control.tasks) or 'none'}"
             )
     return {name: control.tasks[name] for name in tasks}
+
+
+def pose_gains_of(control: ControllerSettings, name: str) -> PoseGains:
+    """The controller's pose gains of that name; its usual ones, if empty.
+
+    Raises:
+        InputError: it has none of that name.
+    """
+    if name and name not in control.poses:
+        raise InputError(
+            f"controller={control.name} has no pose gains {name!r}; "
+            f"it has: {', '.join(control.poses) or 'none'}"
+        )
+    return control.poses[name] if name else control.pose

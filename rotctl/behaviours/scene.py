@@ -35,6 +35,7 @@ class Scene:
         axes: (3, 3) rows are the behaviour's forward, left and up, world.
         excursion: AE and phase now, measured by `measure`.
         begin: of the stage.
+        first: AE and phase at the start of the run.
         target: in-plane excursion that the behaviour is to reach since its start [rad].
         turned: in-plane excursion since its start [rad].
         airborne: how long nothing has touched the ground [s].
@@ -47,6 +48,7 @@ class Scene:
     excursion: Excursion
     measure: ExcursionName
     begin: Begin
+    first: Excursion
     target: float
     turned: float
     airborne: float

@@ -15,12 +15,13 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aims import Aim
-from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.behaviours.behaviour import Placement, Signals, gains_of, pose_gains_of
 from rotctl.behaviours.facing import frame_of
 from rotctl.behaviours.scene import Begin, Scene
 from rotctl.behaviours.until import Until
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import KINDS, kind
+from rotctl.control.settings import PoseGains
 from rotctl.control.supervisor import SupervisorName
 from rotctl.control.task import TASK, Tasks, task
 from rotctl.linear import product
@@ -30,7 +31,7 @@ from rotctl.mechanics.model import SIDES, Model, body_ids
 from rotctl.mechanics.state import State
 from rotctl.motion import Poses, RollAbout, make_pose_pair
 from rotctl.rotations import Array, advance, cross, dot
-from rotctl.settings import STRICT, Finite, Vector
+from rotctl.settings import STRICT, Finite, NonNegative, Vector
 
 SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
 
@@ -44,12 +45,14 @@ class TaskSettings:
         aim: what it aims at; none for `limits`.
         body: that it is about; a name without a side stands for a task on both sides.
         point: of the body, in its frame [m]; for `limits` the margin is its first.
+        gains: name of the controller's gains; those of the task's own name, if empty.
     """
 
     kind: str
     aim: Aim | None = None
     body: str = ""
     point: Vector = (0.0, 0.0, 0.0)
+    gains: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -69,6 +72,8 @@ class Stage:
         tasks: by name, beside those of every stage.
         until: what ends it; nothing for the last stage alone.
         supervisor: in place of the controller's.
+        pose: name of the controller's pose gains in place of its usual ones.
+        lead: poses are looked up so far ahead of the phase, at most at the target [rad].
         held_out: bodies whose contacts control may not use.
     """
 
@@ -77,6 +82,8 @@ class Stage:
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     until: Until | None = None
     supervisor: SupervisorName | None = None
+    pose: str = ""
+    lead: NonNegative = 0.0
     held_out: tuple[str, ...] = ()
 
 
@@ -146,6 +153,7 @@ class _Part:
     fillers: list[tuple[int, str, Aim]]
     slots: list[int]
     held_out: NDArray[np.bool_]
+    pose: PoseGains
 
 
 class Staged:
@@ -187,7 +195,8 @@ class Staged:
         fillers: list[tuple[int, str, Aim]] = []
         slots: list[int] = []
         every = self._settings.tasks | stage.tasks
-        gains = gains_of(self._control, tuple(every))
+        named = {name: wanted.gains or name for name, wanted in every.items()}
+        gains = gains_of(self._control, tuple(named.values()))
         for name, wanted in every.items():
             key = f"behaviour.stages.{stage.name}.tasks.{name}.body"
             bodies = body_ids(model.mj, [wanted.body], key) if wanted.body else [0]
@@ -196,11 +205,12 @@ class Staged:
                     wanted.aim.check(model)
                     fillers.append((len(rows), wanted.kind, wanted.aim))
                 number = kind(wanted.kind).number
-                rows.append(task(number, gains[name], self.axes, body, wanted.point))
+                rows.append(task(number, gains[named[name]], self.axes, body, wanted.point))
                 slots.append(self.tasks.index(slot))
         held_out = model.excluded.copy()
         held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
-        return _Part(np.concatenate([np.zeros(0, TASK), *rows]), fillers, slots, held_out)
+        tasks = np.concatenate([np.zeros(0, TASK), *rows])
+        return _Part(tasks, fillers, slots, held_out, pose_gains_of(self._control, stage.pose))
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] about left."""
@@ -243,13 +253,14 @@ class Staged:
         scene = self._scene(memory, state)
         for i, kind_name, aim in part.fillers:
             aim.fill(part.tasks[i], kind_name, scene)
-        pose_a, pose_b = self._poses[memory.stage].at(memory.excursion.phase)
+        ahead = min(max(scene.target - scene.turned, -stage.lead), stage.lead)
+        pose_a, pose_b = self._poses[memory.stage].at(memory.excursion.phase + ahead)
         return Command(
             tasks=part.tasks,
             pose_a=pose_a,
             pose_b=pose_b,
             forward=self.axes[0],
-            pose=self._control.pose,
+            pose=part.pose,
             contact=self._control.contact,
             supervisor=stage.supervisor or self._control.supervisor,
             thresholds=self._control.thresholds,
@@ -270,6 +281,7 @@ class Staged:
             excursion=memory.excursion,
             measure=self._measured.measure,
             begin=memory.begin,
+            first=memory.first,
             target=self._target,
             turned=memory.excursion.phase - memory.first.phase,
             airborne=memory.airborne,

@@ -52,6 +52,21 @@ class Turned:
 
 
 @validated(frozen=True, config=STRICT)
+class Near:
+    """So near to the behaviour's target, on either side [deg]."""
+
+    kind: Literal["near"]
+    angle: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        return abs(scene.target - scene.turned) <= radians(self.angle)
+
+
+@validated(frozen=True, config=STRICT)
 class Touches:
     """One of these bodies is on the ground; a name without a side stands for both sides."""
 
@@ -98,4 +113,4 @@ class Still:
         return scene.still > 0.0 and scene.still >= self.seconds
 
 
-Until = Annotated[After | Turned | Touches | Airborne | Still, Field(discriminator="kind")]
+Until = Annotated[After | Turned | Near | Touches | Airborne | Still, Field(discriminator="kind")]

@@ -1,5 +1,6 @@
 """The controller's numbers: gains and weights by objective, supervisor thresholds."""
 
+from dataclasses import field
 from typing import Annotated, Literal
 
 from pydantic import Field, Strict
@@ -77,7 +78,8 @@ class ControllerSettings:
         merging: which contacts count as one.
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
         sees_disturbance: whether control knows of the forces from outside.
-        tasks: gains by the name of a behaviour's task.
+        poses: further pose gains, by the name that a stage asks for.
+        tasks: gains by the name of a behaviour's task, or by the name that a task asks for.
     """
 
     name: str
@@ -93,4 +95,5 @@ class ControllerSettings:
     contact: ContactGains
     pose: PoseGains
     tasks: dict[str, TaskGains]
+    poses: dict[str, PoseGains] = field(default_factory=dict)
     description: str = ""
