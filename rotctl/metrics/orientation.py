@@ -89,12 +89,17 @@ def measure(
 
 
 def trunk_turn(log: Arrays) -> np.ndarray:
-    """How far the trunk's front has turned about left since the start (steps,) [deg]."""
+    """How far the trunk's front has turned about left since the posture it began in (steps,) [deg].
+
+    What the start is off that posture counts, as a target is for the posture.
+    """
     forward, _, up = frame(log)
     front = floats(log, "trajectory/trunk_axes")[:, :, 0]
     pairs = zip((front * forward).sum(axis=1), (front * up).sum(axis=1), strict=True)
     angle = np.unwrap(np.array([math.atan2(f, u) for f, u in pairs]))
-    return np.asarray(np.degrees(angle - angle[:1]))
+    begin = floats(log, "trajectory/phase")[:1]
+    whole = math.tau * np.round((angle[:1] - begin) / math.tau)
+    return np.asarray(np.degrees(angle - begin - whole))
 
 
 def failure(metrics: OrientationMetrics, criteria: OrientationCriteria) -> str:
