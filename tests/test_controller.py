@@ -8,8 +8,8 @@ import pytest
 
 from rotctl.behaviours.behaviour import Placement
 from rotctl.control import Controller, condensed, controller
-from rotctl.control.pose import PoseTracker
 from rotctl.control.kinds import KINDS
+from rotctl.control.pose import PoseTracker
 from rotctl.errors import InputError
 from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.state import read

@@ -1,4 +1,4 @@
-"""A behaviour along another heading is the same motion, turned: nothing looks at the world's axes."""
+"""A roll along another heading is the same roll, turned: MuJoCo and control know no way of their own."""
 
 from itertools import islice
 

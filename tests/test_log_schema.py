@@ -35,9 +35,9 @@ def test_every_dataset_has_a_unit_and_a_one_line_description():
 
 
 def test_groups_and_writer_attributes_are_part_of_the_schema():
-    assert GROUPS == (
+    assert (
         *("trajectory", "command", "contacts", "disturbance", "solver", "events", "model"),
-    )
+    ) == GROUPS
     assert set(WRITER_ATTRIBUTES) < set(ATTRIBUTES)
 
 
