@@ -1,4 +1,4 @@
-"""A roll along another heading is the same roll, turned: MuJoCo and control know no way of their own."""
+"""A behaviour along another heading is the same motion, turned: nothing knows of world axes."""
 
 from itertools import islice
 
