@@ -83,3 +83,22 @@ def look_at(scenario, steps, look, every=1):
 
     shown = Shown(scenario.model, scenario.controller, some)
     return list(islice(Episode(replace(scenario, controller=shown)), steps))
+
+
+class Asking:
+    """A behaviour that asks for more tasks, beside those of another one."""
+
+    def __init__(self, behaviour, more):
+        self._behaviour, self._more = behaviour, more
+        self.tasks = (*behaviour.tasks, *(f"more_{i}" for i in range(len(more))))
+
+    def __getattr__(self, name):
+        return getattr(self._behaviour, name)
+
+    def command(self, memory, state):
+        command = self._behaviour.command(memory, state)
+        asked = with_tasks(command, *self._more)
+        if command.slots is None:
+            return asked
+        behind = range(len(self._behaviour.tasks), len(self.tasks))
+        return replace(asked, slots=[*command.slots, *behind])

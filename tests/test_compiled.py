@@ -6,9 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 from both import along
+from questions import Asking, any_task
 
 from rotctl.config import load
 from rotctl.control import Controller, compiled
+from rotctl.control.compiled import CompiledStep
+from rotctl.control.kinds import KINDS, Kind, Rows
 from rotctl.mechanics.state import read
 from rotctl.scenario import build
 from rotctl.simulation.episode import Episode
@@ -61,6 +64,49 @@ def test_same_torques_and_contacts_as_the_reference(overrides):
         assert dropped > 0
 
 
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["seed=1"],
+        ["seed=2", "physics=lockstep", "behaviour=incline"],
+        ["seed=3", "behaviour=terrain_roll", "terrain=hazards"],
+        ["seed=4", "behaviour=stand", "disturbance=push", "controller.sees_disturbance=true"],
+        ["seed=5", "disturbance=wind", "controller.sees_disturbance=true", "physics.density=20"],
+    ],
+    ids=" ".join,
+)
+def test_all_kinds_of_task_at_once(overrides):
+    """To rounding: what tasks lack, want and get, and the torques."""
+    scenario, rng = build(load([*overrides, "character.exclude_from_control=[head]"])), seeded()
+    names = [*KINDS, *KINDS]
+    more = [any_task(name, scenario.model, rng) for name in names]
+    asking = replace(scenario, behaviour=Asking(scenario.behaviour, more))
+    compared = 0
+    for asked in along(asking, 100):
+        slow, fast = asked.slow, asked.fast
+        assert asked.found.bias == pytest.approx(asked.expected.bias, rel=1e-12, abs=1e-12)
+        if slow.fallback:  # then the reference's second solver was asked, by both
+            assert fast.torque == pytest.approx(slow.torque, abs=1e-6)
+            continue
+        compared += fast.fallback == 0
+        assert fast.used.tolist() == slow.used.tolist()
+        assert fast.error == pytest.approx(slow.error, rel=1e-10, abs=1e-10)
+        for name in ("wanted", "rates_wanted"):
+            assert_close(getattr(fast, name), getattr(slow, name), 1e-10)
+        for name in ("torque", "predicted", "rates_predicted"):
+            assert_close(getattr(fast, name), getattr(slow, name), 1e-7)
+    assert compared > 90
+
+
+def seeded():
+    return np.random.default_rng(8)
+
+
+def assert_close(found, expected, within):
+    """Relative to the largest of its numbers."""
+    assert found == pytest.approx(expected, abs=within * (1.0 + np.abs(expected).max()))
+
+
 def test_weak_joints_make_limits_bind():
     """With a fifth of the strength the full form is needed nearly always."""
     scenario = build(load(["seed=5"]))
@@ -100,6 +146,66 @@ def test_what_it_returns_is_the_caller_s():
     steps = list(along(build(load(["seed=6"])), 12))
     assert len({asked.found.momentum.com.tobytes() for asked in steps}) == 12
     assert len({asked.fast.torque.tobytes() for asked in steps}) == 12
+
+
+@pytest.fixture
+def refused(monkeypatch):
+    """Of each question so far, whether C left it to the reference."""
+    said, decide = [], CompiledStep.decide
+
+    def told(*question):
+        decision = decide(*question)
+        said.append(decision is None)
+        return decision
+
+    monkeypatch.setattr(CompiledStep, "decide", told)
+    return said
+
+
+def test_a_kind_that_c_has_not_is_decided_by_the_reference(monkeypatch, refused):
+    def nodding(task, model, state):
+        """The joint of number `body`; of this test alone."""
+        matrix = np.zeros((1, model.mj.nv))
+        matrix[0, int(task["body"]) + model.joints.start] = 1.0
+        return Rows(matrix, task["acceleration"][:1], task["weight"][:1], np.zeros(3))
+
+    monkeypatch.setitem(KINDS, "nodding", Kind(len(KINDS), momentum=False, rows=nodding))
+    scenario = build(load(["seed=1"]))
+    task = any_task("nodding", scenario.model, seeded(), weight=1.0)
+    moved = []
+    for more in ([], [task]):
+        scenario = build(load(["seed=1"]))
+        asking = replace(scenario, behaviour=Asking(scenario.behaviour, more))
+        for asked in along(asking, 20):
+            assert_close(asked.fast.torque, asked.slow.torque, 1e-9)
+            assert asked.fast.predicted.shape == (2 + len(more), 3)
+        moved.append(asked.fast.torque)
+    assert refused == [False] * 20 + [True] * 20
+    assert np.abs(moved[1] - moved[0]).max() > 0.1
+
+
+@pytest.mark.parametrize("count", [compiled.TASKS - 2, compiled.TASKS - 1, 100])
+def test_more_tasks_than_c_has_room_for_are_decided_by_the_reference(count, refused):
+    scenario, rng = build(load(["seed=1"])), seeded()
+    names = ["point", "attitude", "linear"]
+    more = [any_task(names[i % 3], scenario.model, rng, weight=1e-3) for i in range(count)]
+    asking = replace(scenario, behaviour=Asking(scenario.behaviour, more))
+    for asked in along(asking, 5):
+        assert_close(asked.fast.torque, asked.slow.torque, 1e-7)
+    assert refused == [count + 2 > compiled.TASKS] * 5
+
+
+@pytest.mark.parametrize("overrides", [[], ["terrain=hazards"]])
+def test_rows_of_many_joints_fit_in_whatever_else_lies_about(overrides, refused):
+    scenario, rng = build(load(["seed=1", *overrides])), seeded()
+    more = [any_task("limits", scenario.model, rng, weight=1e-3) for _ in range(2)]
+    for task in more:
+        task["point"] = 10.0  # [rad] every joint is nearer to a stop
+    asking = replace(scenario, behaviour=Asking(scenario.behaviour, more))
+    for asked in along(asking, 5):
+        assert asked.slow.error[-1, 0] > 15  # joints, each with a row
+        assert_close(asked.fast.torque, asked.slow.torque, 1e-7)
+    assert not any(refused)
 
 
 def test_it_serves_the_default_only():

@@ -1,4 +1,4 @@
-"""A behaviour along another heading is the same motion, turned: nothing knows of world axes."""
+"""A behaviour along another heading is the same motion, turned: the world's axes do not matter."""
 
 from itertools import islice
 

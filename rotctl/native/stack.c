@@ -21,6 +21,7 @@ static void align(double* F, double* J, int nv, const double* forward) {
 // The tasks' rows: those over qddot after the `from` rows of contacts, the others by themselves.
 static int collect_tasks(Self* s, const mjData* d, const Reading* r, const Command* w, int from,
                          Answer* out) {
+  int most = s->nu > 3 ? s->nu : 3;  // rows of a kind of motion; one of momentum has 3
   s->momenta = s->motion_rows = 0;
   for (int t = 0; t < w->tasks; t++) {
     const Task* task = w->task + t;
@@ -29,7 +30,7 @@ static int collect_tasks(Self* s, const mjData* d, const Reading* r, const Comma
     int over_motion = s->motion[task->kind], nv = s->nv;
     int* count = over_motion ? &s->motion_rows : &s->momenta;
     int first = over_motion ? from + *count : *count;
-    if (over_motion ? *count + nv > MOTION_ROWS : *count + 3 > MOMENTA) return FAILED;
+    if (over_motion ? *count + most > MOTION_ROWS : *count + 3 > MOMENTA) return FAILED;
     double* rows = over_motion ? s->jacobian + first * nv : s->rate_rows[first];
     double* wanted = over_motion ? s->wanted + first : s->rate_wanted + first;
     double* weight = over_motion ? s->weight + first : s->rate_weight + first;
