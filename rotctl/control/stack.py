@@ -47,6 +47,8 @@ class Stack:
         maps: (6, 3m) contact forces to rates of [L, H].
         rate_rows: (p, 6) rows over [Ldot, Hdot].
         rate_wanted, rate_weight: (p,) likewise.
+        mobility: A (n, 3m) [1/kg for contacts].
+        actuation_square: B B' (n, n).
         gravity: (6,) rates of [L, H] without contacts [N, N m].
         frame: (m, 3, 3) the contacts' N, T1, T2, world axes.
         tasks: of the command, and where their rows stand.
@@ -71,6 +73,8 @@ class Stack:
     rate_rows: Array
     rate_wanted: Array
     rate_weight: Array
+    mobility: Array
+    actuation_square: Array
     gravity: Array
     frame: Array
     tasks: tuple["TaskRows", ...]
@@ -85,32 +89,22 @@ class Stack:
         """The rows that have a weight."""
         return np.flatnonzero(self.weight > 0)
 
-    @cached_property
-    def mobility(self) -> Array:
-        """A (n, 3m) [1/kg for contacts]."""
-        return product(self.solved, self.jacobian.T)
-
-    @cached_property
+    @property
     def actuation(self) -> Array:
         """B (n, nu)."""
         return self.solved[:, self.joints]
-
-    @cached_property
-    def actuation_square(self) -> Array:
-        """B B' (n, n)."""
-        return product(self.actuation, self.actuation.T)
 
     @cached_property
     def _push(self) -> Array:
         """The momentum rows over contact forces (p, 3m)."""
         return product(self.rate_rows, self.maps)
 
-    @cached_property
+    @property
     def momentum_square(self) -> Array:
         """What the momentum rows put on contact forces squared (3m, 3m)."""
         return product(self._push.T * self.rate_weight, self._push)
 
-    @cached_property
+    @property
     def momentum_pull(self) -> Array:
         """And on contact forces (3m,): towards what is wanted beyond gravity."""
         miss = self.rate_wanted - product(self.rate_rows, self.gravity)
@@ -127,7 +121,7 @@ class Stack:
         """The same step over the contacts where `keep` (m,) is True."""
         columns = np.repeat(keep, 3)
         rows = np.concatenate((columns, np.ones(len(self.rows) - len(columns), dtype=bool)))
-        part = replace(
+        return replace(
             self,
             contacts=int(keep.sum()),
             rows=self.rows[rows],
@@ -136,15 +130,11 @@ class Stack:
             solved=self.solved[rows],
             drift=self.drift[rows],
             maps=self.maps[:, columns],
-            frame=self.frame[keep],
-        )
-        part.__dict__.update(  # products over all contacts contain those over a subset
+            # Products over all contacts contain those over a subset.
             mobility=self.mobility[np.ix_(rows, columns)],
             actuation_square=self.actuation_square[np.ix_(rows, rows)],
-            momentum_square=self.momentum_square[np.ix_(columns, columns)],
-            momentum_pull=self.momentum_pull[columns],
+            frame=self.frame[keep],
         )
-        return part
 
 
 @dataclass(frozen=True)
@@ -181,6 +171,7 @@ def collect(
     rows = np.concatenate((jacobian, *(rows.matrix for rows in motion)))
     wanted = np.concatenate((stop, *(rows.wanted for rows in motion)))
     solved = state.solve_mass(model.mj, np.concatenate((rows, state.bias[None])))
+    actuation = solved[:-1, model.joints]
     held = np.full(len(jacobian), command.contact.weight)
     return Stack(
         contacts=int(keep.sum()),
@@ -202,6 +193,8 @@ def collect(
         rate_rows=np.concatenate((np.zeros((0, 6)), *(rows.matrix for rows in momentum))),
         rate_wanted=np.concatenate((np.zeros(0), *(rows.wanted for rows in momentum))),
         rate_weight=np.concatenate((np.zeros(0), *(rows.weight for rows in momentum))),
+        mobility=product(solved[:-1], jacobian.T),
+        actuation_square=product(actuation, actuation.T),
         gravity=np.concatenate((model.mass * model.gravity, np.zeros(3))),
         frame=frame,
         tasks=tasks,
