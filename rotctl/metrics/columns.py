@@ -7,8 +7,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.linear import product
-
 ALL_FAILED = 2  # of the dataset solver/status
 
 
@@ -57,4 +55,11 @@ def heading(log: Arrays) -> float:
 
 def in_frame(log: Arrays, name: str) -> NDArray[np.float64]:
     """World vectors (steps, 3) of the log along the behaviour's forward, left and up."""
-    return product(floats(log, name), frame(log).T)
+    return along_frame(log, floats(log, name))
+
+
+def along_frame(log: Arrays, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """World vectors (n, 3) along the behaviour's forward, left and up."""
+    from rotctl.linear import product  # MuJoCo's: to import it fails where MUJOCO_GL is wrong
+
+    return product(vectors, frame(log).T)

@@ -71,8 +71,8 @@ def filmstrip(
     columns = min(MAX_COLUMNS, frames) if columns is None else columns
     if not 1 <= columns <= frames:
         raise InputError(f"columns is {columns}, valid: 1 to {frames}, the number of frames")
-    rows = _rows(log, frames, start, end)
-    pictures, shown = _drawn(log, rows, FRAME)
+    backend = gl.backend()  # first of all: importing MuJoCo raises where MUJOCO_GL makes no sense
+    pictures, shown = _drawn(log, _rows(log, frames, start, end), FRAME, backend)
     sheet = _sheet(log, pictures, shown, columns)
     write(out, sheet)
 
@@ -84,7 +84,8 @@ def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
         InputError: nothing can be drawn on this machine.
         LogError: the log is damaged or its model is not safe to draw.
     """
-    pictures, _ = _drawn(log, _rows(log, frames, None, None), size)
+    backend = gl.backend()
+    pictures, _ = _drawn(log, _rows(log, frames, None, None), size, backend)
     row = Image.new("RGB", (frames * (size[0] + _THIN) - _THIN, size[1]), PAPER)
     for i, picture in enumerate(pictures):
         row.paste(picture, (i * (size[0] + _THIN), 0))
@@ -92,11 +93,9 @@ def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
 
 
 def _drawn(
-    log: RunLog, rows: list[int], size: tuple[int, int]
+    log: RunLog, rows: list[int], size: tuple[int, int], backend: str
 ) -> tuple[list[Image.Image], list[Moment]]:
     """Frames of these rows of the log, and what they show."""
-    backend = gl.backend()
-    # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
     from rotctl.report import scene
 
     model = stored_model.load(log)

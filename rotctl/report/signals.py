@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotctl.linear import product
 from rotctl.log import RunLog
-from rotctl.metrics.columns import frame, in_frame
+from rotctl.metrics.columns import along_frame, in_frame
 from rotctl.rotations import Array
 
 TURN = 2.0 * math.pi  # [rad]
@@ -91,7 +90,7 @@ def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
     return Rates(
         desired=in_frame(log, "trajectory/linear_momentum_rate_desired")[rows],
         predicted=in_frame(log, "trajectory/linear_momentum_rate_predicted")[rows],
-        realised=product(_ground_force(log, rows) + weight, frame(log).T),
+        realised=along_frame(log, _ground_force(log, rows) + weight),
     )
 
 
@@ -101,7 +100,7 @@ def angular_rates(log: RunLog, rows: slice) -> Rates:
     return Rates(
         desired=in_frame(log, "trajectory/angular_momentum_rate_desired")[rows],
         predicted=in_frame(log, "trajectory/angular_momentum_rate_predicted")[rows],
-        realised=product(np.cross(arms, _forces(log, rows)).sum(axis=1), frame(log).T),
+        realised=along_frame(log, np.cross(arms, _forces(log, rows)).sum(axis=1)),
     )
 
 
