@@ -150,7 +150,9 @@ def test_self_contacts_beside_ground_contacts(cone, world):
             pose[world.model.joint_names.index(name + side)] = angle
     data = mujoco.MjData(cone)
     start = Start(pitch=-1.0, velocity=np.zeros(3), angular_velocity=np.zeros(3))
-    place(replace(world.model, mj=cone), data, start, world.scenario.behaviour.orientation, pose)
+    behaviour = world.scenario.behaviour
+    usual = replace(behaviour.start(start.pitch), pose=pose)
+    place(replace(world.model, mj=cone), data, start, usual, behaviour.axes)
     data.qpos[2] -= 0.02
     mujoco.mj_step1(cone, data)
     contacts = read_contacts(cone, data)
