@@ -24,6 +24,7 @@ from rotctl import documents
 from rotctl.behaviours import BehaviourSettings
 from rotctl.checked import adapter, brief, checked, clip, unknown_key
 from rotctl.control import ControllerSettings
+from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, require_plain
 from rotctl.log import RunLog
@@ -34,9 +35,13 @@ from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
-from rotctl.plain import NOTHING, dotted, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, leaves, member, put, way
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
+
+PROSE = ("description", "source")  # may have several lines
+LONGEST_TEXT = 200
+LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
 
 
 @validated(frozen=True, config=STRICT)
@@ -111,7 +116,23 @@ def check(data: Any) -> Config:
     Raises:
         InputError: one line for the first thing that is wrong.
     """
-    return checked(Config, data)
+    found = checked(Config, data)
+    for parts, value in leaves(data):
+        if complaint := _absurd(parts, value):
+            raise InputError(f"{dotted(parts)}={brief(value)}: {complaint}")
+    return found
+
+
+def _absurd(parts: Way, value: Any) -> str:
+    """What is wrong with a value that no run, picture or terminal could use; mostly nothing."""
+    if isinstance(value, str):
+        if parts[-1] in PROSE:
+            return "must have no control characters" if UNPRINTABLE.search(value) else ""
+        if not value.isprintable() or len(value) > LONGEST_TEXT:
+            return f"must be printable, on one line of at most {LONGEST_TEXT} characters"
+        return "must not be empty" if parts[-1] == "name" and not value.strip() else ""
+    large = isinstance(value, int | float) and abs(value) > LARGEST and parts != ("seed",)
+    return f"must be at most {LARGEST:g} in size" if large else ""
 
 
 def to_dict(config: Config) -> dict[str, Any]:

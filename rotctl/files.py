@@ -78,6 +78,16 @@ def text(path: Path, limit: int, *, linked: bool) -> str:
         raise InputError(f"{path}:{line}: is no text (UTF-8)") from None
 
 
+def require_ending(path: Path, *endings: str) -> None:
+    """Check the name of a file that is to be written.
+
+    Raises:
+        InputError: it says that the file is something else.
+    """
+    if path.suffix.lower() not in endings:
+        raise InputError(f"{path}: valid endings: {', '.join(endings)}")
+
+
 def encoded(text: str) -> bytes:
     """UTF-8; what it cannot hold, such as a byte of a file's name, is spelled out."""
     return text.encode("utf-8", "backslashreplace")

@@ -39,7 +39,7 @@ def leaves(data: Any, parts: Way = ()) -> Iterator[tuple[Way, Any]]:
     if isinstance(data, dict) and data:
         for key, inner in data.items():
             yield from leaves(inner, (*parts, key))
-    elif isinstance(data, list) and data:
+    elif isinstance(data, list | tuple) and data:
         for index, inner in enumerate(data):
             yield from leaves(inner, (*parts, index))
     else:

@@ -197,6 +197,18 @@ def plain():
         ("duration", 1e9, "1000000000.0: must be less than or equal to 3600"),
         ("controller.pose.weight", -1, "-1: must be greater than or equal to 0"),
         ("terrain.friction", 0, "0: must be greater than 0"),
+        ("character.root_height", 1e9, "1000000000.0: must be less than or equal to 10"),
+        ("behaviour.poses.a.knee", 1e9, "1000000000.0: must be less than or equal to 10"),
+        ("behaviour.speed", 1e308, "1e+308: must be at most 1e+13 in size"),
+        # Texts.
+        ("behaviour.name", "", '"": must not be empty'),
+        (
+            "behaviour.name",
+            "a\x1b[31m",
+            '"a\\u001b[31m": must be printable, on one line of at most 200 characters',
+        ),
+        ("start.name", "a\nb", '"a\\nb": must be printable, on one line of at most 200 characters'),
+        ("behaviour.description", "a\0", '"a\\u0000": must have no control characters'),
         ("controller.rate", math.inf, "inf: must be a finite number"),
         # Lists.
         ("physics.gravity", [], "[]: must have 3 values"),

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from rotctl import files
 from rotctl.bench import overhead, scaling, solvers, split, startup
 
 STATES = 150  # for the comparison of solvers; literal OSQP takes tens of milliseconds on each
@@ -15,6 +16,8 @@ def bench(repeats: int, picture: Path | None) -> Iterator[str]:
         repeats: medians are over so many.
         picture: where to plot the cost against contacts, or None.
     """
+    if picture is not None:
+        files.require_ending(picture, ".svg", ".png", ".pdf")
     yield split.split(repeats)
     yield startup.processes(repeats)
     yield solvers.compare(STATES)

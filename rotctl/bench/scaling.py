@@ -76,7 +76,7 @@ def plot(costs: list[Cost], out: Path) -> None:
     axes.grid(which="both", alpha=0.2)
     axes.legend()
     packed = BytesIO()
-    figure.savefig(packed, format=out.suffix[1:].lower() or "svg")
+    figure.savefig(packed, format=out.suffix[1:].lower())
     files.replace(out, packed.getvalue())
 
 

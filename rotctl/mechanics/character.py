@@ -61,9 +61,9 @@ class Character:
     """All numbers of one character; see `conf/character/adult.yaml` for units and sources."""
 
     name: str
-    height: Positive
-    mass: Positive
-    root_height: Positive
+    height: Annotated[Positive, Field(le=10)]
+    mass: Annotated[Positive, Field(le=10_000)]
+    root_height: Annotated[Positive, Field(le=10)]
     joint_damping: NonNegative
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]

@@ -8,15 +8,18 @@ sides; joints not named are held at 0. A pose is clipped to the joints' ranges.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import cos, sin
+from typing import Annotated
 
 import numpy as np
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
-Angle = Finite | tuple[Finite, Finite, Finite]
+Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
+Angle = Turn | tuple[Turn, Turn, Turn]
 
 
 @validated(frozen=True, config=STRICT)

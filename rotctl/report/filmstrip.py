@@ -71,8 +71,10 @@ def filmstrip(
     columns = min(MAX_COLUMNS, frames) if columns is None else columns
     if not 1 <= columns <= frames:
         raise InputError(f"columns is {columns}, valid: 1 to {frames}, the number of frames")
+    files.require_ending(out, ".png")
     backend = gl.backend()  # first of all: importing MuJoCo raises where MUJOCO_GL makes no sense
-    pictures, shown = _drawn(log, _rows(log, frames, start, end), FRAME, backend)
+    rows = _rows(log, frames, start, end)
+    pictures, shown = _drawn(log, rows, FRAME, backend)
     sheet = _sheet(log, pictures, shown, columns)
     write(out, sheet)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from rotctl import files
 from rotctl.report import gl
 from rotctl.report.filmstrip import FRAME, MAX_COLUMNS, OVERSAMPLING, write
 from rotctl.report.frame import INK, PAPER, SOFT, Moment, draw, typeface
@@ -31,6 +32,7 @@ def motion_strip(
     Raises:
         InputError: nothing can be drawn on this machine, or `out` cannot be written.
     """
+    files.require_ending(out, ".png")
     backend = gl.backend()
     # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
     import mujoco

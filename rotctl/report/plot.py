@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import files
-from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
 from rotctl.report import character, gl, stored_model
-from rotctl.report.rows import drawable, window
+from rotctl.report.rows import drawable, plotted, window
 from rotctl.report.signals import angular_rates, linear_rates, signals
 from rotctl.report.timeline import contact_bars
 from rotctl.report.title import title
@@ -55,9 +54,9 @@ def plot(log: RunLog, out: Path, start: float | None = None, end: float | None =
         InputError: `out` has another ending or cannot be written, or a time is not in the log.
         LogError: the log is damaged or its model is not safe to load.
     """
-    kind = FORMATS.get(out.suffix.lower())
-    if kind is None:
-        raise InputError(f"{out}: cannot plot into that; valid endings: {', '.join(FORMATS)}")
+    files.require_ending(out, *FORMATS)
+    kind = FORMATS[out.suffix.lower()]
+    log = plotted(log)
     time = drawable(log, log["trajectory/qpos"])
     first, last = window(time, start, end)
     gl.not_needed()

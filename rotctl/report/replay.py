@@ -39,6 +39,7 @@ def replay(log: RunLog, out: Path, compare: RunLog | None = None) -> None:
         InputError: `out` cannot be written.
         LogError: a log is damaged or its model is not safe to load.
     """
+    files.require_ending(out, ".html", ".htm")
     files.replace(out, files.encoded(page(log, compare)))
 
 

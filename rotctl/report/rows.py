@@ -1,12 +1,33 @@
 """Which rows of a log to show: a run that broke down ends in rows that nobody can draw."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.rotations import Array
 
 MAX_POSITION = 1e5  # [m, rad] a run that broke down is shown until there
+MAX_TIME = 1e5  # [s] no run is as long
+LARGEST = 1e12  # in any unit; axes of larger numbers have no ticks
+
+
+class Plotted(RunLog):
+    """A log whose numbers are no larger than can be plotted: others are not numbers."""
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """Reads one dataset."""
+        array = super().__getitem__(name)
+        if array.dtype.kind != "f":
+            return array
+        return np.where(np.abs(array) < LARGEST, array, np.nan)
+
+
+def plotted(log: RunLog) -> RunLog:
+    """The same log, for plots."""
+    return Plotted(log.path, log.attributes, log.sizes)
 
 
 def drawable(log: RunLog, states: Array) -> Array:
@@ -19,7 +40,8 @@ def drawable(log: RunLog, states: Array) -> Array:
         LogError: there is none.
     """
     time: Array = log["trajectory/time"]
-    sound = (np.abs(states) < MAX_POSITION).all(axis=1) & np.isfinite(time)
+    sound = (np.abs(states) < MAX_POSITION).all(axis=1) & (np.abs(time) < MAX_TIME)
+    sound[1:] &= time[1:] > time[:-1]
     last = len(time) if sound.all() else int(np.argmin(sound))
     if last == 0:
         raise LogError(f"{log.path}: has no step that could be drawn")

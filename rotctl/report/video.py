@@ -44,6 +44,7 @@ def video(
             or `out` cannot be written.
         LogError: the log is damaged or its model is not safe to draw.
     """
+    files.require_ending(out, ".mp4")
     states = log["trajectory/qpos"]
     rows = _rows(drawable(log, states), start, end)
     program = encoder.executable()

@@ -47,7 +47,9 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         InputError: there is no such column.
     """
     keys = list(by) if by is not None else [key for key in table.keys if key != "seed"]
-    for key in keys:
+    for i, key in enumerate(keys):
+        if key in keys[:i]:
+            raise InputError(f"--by: names {key!r} twice")
         if key not in table.rows.columns:
             raise InputError(f"--by: no column {key!r}; valid: {', '.join(table.rows.columns)}")
     codes = sorted(set(table.rows["code"]) - {""})

@@ -23,6 +23,7 @@ from rotctl.sweep.engines import Failure, carried_out
 T = TypeVar("T")
 R = TypeVar("R")
 
+MOST_JOBS = 1024
 PATIENCE = 5.0  # [s] for a process that was told to end
 BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -80,8 +81,8 @@ class LocalEngine:
     """Up to `jobs` processes, started when there is work and kept for the next map."""
 
     def __init__(self, jobs: int | None = None) -> None:
-        if jobs is not None and jobs < 1:
-            raise InputError(f"--jobs={jobs}: must be at least 1")
+        if jobs is not None and not 1 <= jobs <= MOST_JOBS:
+            raise InputError(f"--jobs={jobs}: valid: 1 to {MOST_JOBS}")
         self._jobs = jobs or cpus()
         self._idle: list[Worker] = []
 

@@ -52,9 +52,8 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
         InputError: the first thing that is wrong, in one line.
     """
     grids = [[_values(override) for override in grid] for grid in matrix]
-    count = sum(prod(map(len, grid)) for grid in grids)
-    if count > MOST_POINTS:
-        raise InputError(f"the sweep has {count} points; at most {MOST_POINTS}, in several sweeps")
+    if sum(prod(map(len, grid)) for grid in grids) > MOST_POINTS:
+        raise InputError(f"the sweep has more than {MOST_POINTS} points; make several sweeps")
     bases: dict[tuple[str, ...], dict[str, Any]] = {}
     for grid in grids:
         for overrides in product(*grid):
