@@ -26,8 +26,8 @@ examples:
   rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
-the solver broke down, a run of a sweep could not be run, a log does not repeat (rotctl verify),
-or a claim got worse (rotctl report --against), 2 bad input, 130 interrupted
+the solver broke down, a run of a sweep could not be run or its scheduler is gone, a log does not
+repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad input, 130 interrupted
 """
 
 # In the order of the help.

@@ -155,6 +155,14 @@ def test_overrides_and_options_may_be_mixed(cli, made):
         (["inspect"], "rotctl inspect: the following arguments are required: RUN.h5; "
          "see rotctl inspect --help"),
         (["bench", "--repeats", "0"], "rotctl: --repeats=0: must be at least 1"),
+        (["bench", "--plot", "x.txt"], "rotctl: x.txt: valid endings: .svg, .png, .pdf"),
+        (["sweep", "seed=0", "--out", "x", "--jobs", "100000"],
+         "rotctl: --jobs=100000: valid: 1 to 1024"),
+        (["sweep", "seed=0", "--out", "x", "--jobs", "0"], "rotctl: --jobs=0: valid: 1 to 1024"),
+        (["sweep", "seed=range(0,1e9)", "--out", "x"],
+         "rotctl: the sweep has more than 100000 points; make several sweeps"),
+        (["preview-motion", "forward_roll", "--out", "x.txt"],
+         "rotctl: x.txt: valid endings: .png"),
         (["inspect", "nothing.h5"], "rotctl: nothing.h5: no such file"),
         (["inspect", "x" * 300], f"rotctl: {'x' * 300}: no such file"),
         (["inspect", "."], "rotctl: .: is a folder; name the log in it, such as run.h5"),
@@ -365,6 +373,34 @@ def test_inspect_refuses_a_foreign_hdf5(cli, tmp_path):
         file["a"] = 1
     message = f"rotctl: {path}: not a rotctl log (no schema_version)\n"
     assert cli("inspect", path) == (2, "", message)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "endings"),
+    [
+        (["render", "{log}", "--filmstrip", "out.txt"], ".png"),
+        (["render", "{log}", "--video", "out.txt"], ".mp4"),
+        (["replay", "{log}", "--html", "out.txt"], ".html, .htm"),
+    ],
+)
+def test_a_file_is_not_called_what_it_is_not(cli, made, arguments, endings):
+    command = [text.format(log=made[2]) for text in arguments]
+    assert cli(*command) == (2, "", f"rotctl: out.txt: valid endings: {endings}\n")
+
+
+def test_a_key_that_is_grouped_by_twice(cli, made):
+    said = "rotctl: --by: names 'seed' twice\n"
+    assert cli("summarise", made[0], "--by", "seed,seed") == (2, "", said)
+
+
+def test_warnings_of_libraries_stay_off_the_terminal(tmp_path):
+    """Numbers of the size of 1e13 overflow in squares of squares; the row says what broke down."""
+    code, stdout, stderr = finish(
+        "run", "behaviour.speed=1e13", "behaviour.angular_velocity=1e13", "duration=0.5", "--json",
+        "--out", tmp_path,
+    )  # fmt: skip
+    assert (stdout.count("\n"), stderr) == (1, "")
+    assert code in (0, 1)
 
 
 def test_nothing_from_a_shell_or_a_file_steers_the_terminal(cli, tmp_path):

@@ -160,7 +160,7 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_goes_away_is_said(tmp_path):
+def test_a_scheduler_that_goes_away_is_said(tmp_path, capfd):
     port = free_port()
     address = f"tcp://127.0.0.1:{port}"
     with (
@@ -177,6 +177,7 @@ def test_a_scheduler_that_goes_away_is_said(tmp_path):
     assert str(error.value) == (
         f"{address}: the scheduler is gone; start it again and repeat the command"
     )
+    assert capfd.readouterr() == ("", "")  # no traceback of Dask's either
 
 
 def test_without_dask_the_extra_is_named(monkeypatch):

@@ -8,7 +8,7 @@ from rotctl import files
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
 from rotctl.report import character, gl, stored_model
-from rotctl.report.rows import drawable, plotted, window
+from rotctl.report.rows import drawable, moderate, window
 from rotctl.report.signals import angular_rates, linear_rates, signals
 from rotctl.report.timeline import contact_bars
 from rotctl.report.title import title
@@ -56,7 +56,7 @@ def plot(log: RunLog, out: Path, start: float | None = None, end: float | None =
     """
     files.require_ending(out, *FORMATS)
     kind = FORMATS[out.suffix.lower()]
-    log = plotted(log)
+    log = moderate(log)
     time = drawable(log, log["trajectory/qpos"])
     first, last = window(time, start, end)
     gl.not_needed()

@@ -8,7 +8,7 @@ import numpy as np
 from rotctl.log import RunLog
 from rotctl.report import character, shapes, stored_model
 from rotctl.report.panels import panels
-from rotctl.report.rows import at_rate, drawable
+from rotctl.report.rows import at_rate, drawable, moderate
 from rotctl.report.signals import Signals, signals
 from rotctl.rotations import Array
 
@@ -28,7 +28,7 @@ def data(log: RunLog, compare: RunLog | None) -> Tree:
     Raises:
         LogError: a log is damaged or its model is not safe to load.
     """
-    logs = [log] if compare is None else [log, compare]
+    logs = [moderate(each) for each in (log, compare) if each is not None]
     times = [drawable(each, each["trajectory/qpos"]) for each in logs]
     models = [stored_model.load(each) for each in logs]
     rows = [_frames(time) for time in times]
@@ -36,7 +36,7 @@ def data(log: RunLog, compare: RunLog | None) -> Tree:
     return {
         "duration": max(float(time[-1]) for time in times) or 1e-3,
         "runs": [_run(*each) for each in zip(logs, models, rows, strict=True)],
-        "contacts": _contacts(log, models[0], rows[0]),
+        "contacts": _contacts(logs[0], models[0], rows[0]),
         "panels": panels(plotted[0], plotted[1] if compare else None),
     }
 

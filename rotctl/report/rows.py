@@ -11,11 +11,11 @@ from rotctl.rotations import Array
 
 MAX_POSITION = 1e5  # [m, rad] a run that broke down is shown until there
 MAX_TIME = 1e5  # [s] no run is as long
-LARGEST = 1e12  # in any unit; axes of larger numbers have no ticks
+LARGEST = 1e12  # in any unit; axes of larger numbers would have no ticks
 
 
-class Plotted(RunLog):
-    """A log whose numbers are no larger than can be plotted: others are not numbers."""
+class _Moderate(RunLog):
+    """Numbers that are too large are none."""
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Reads one dataset."""
@@ -25,9 +25,9 @@ class Plotted(RunLog):
         return np.where(np.abs(array) < LARGEST, array, np.nan)
 
 
-def plotted(log: RunLog) -> RunLog:
-    """The same log, for plots."""
-    return Plotted(log.path, log.attributes, log.sizes)
+def moderate(log: RunLog) -> RunLog:
+    """The same log, for plots: its numbers are no larger than `LARGEST`, others are NaN."""
+    return _Moderate(log.path, log.attributes, log.sizes)
 
 
 def drawable(log: RunLog, states: Array) -> Array:

@@ -7,6 +7,7 @@ import numpy as np
 
 from rotctl.log import RunLog
 from rotctl.metrics.columns import along_frame, in_frame
+from rotctl.report.title import plain
 from rotctl.rotations import Array
 
 TURN = 2.0 * math.pi  # [rad]
@@ -106,7 +107,7 @@ def angular_rates(log: RunLog, rows: slice) -> Rates:
 
 def torque_fractions(log: RunLog, rows: slice) -> dict[str, Array]:
     """Largest |torque| / limit (n,) in each group of joints; left and right together."""
-    names = [name.decode("utf-8", "replace") for name in log["model/joint"].tolist()]
+    names = [plain(name.decode("utf-8", "replace")) for name in log["model/joint"].tolist()]
     with np.errstate(divide="ignore", invalid="ignore"):
         fraction = np.abs(log["trajectory/ctrl"][rows]) / log["model/torque_limit"]
     groups: dict[str, list[int]] = {}

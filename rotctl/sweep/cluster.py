@@ -45,8 +45,10 @@ def connect(address: str) -> "DaskEngine":
         raise InputError(f"--scheduler={address}: Dask's settings name no TLS files: {TLS}")
     if address.startswith("tcp://") and security.require_encryption:
         raise InputError(f"--scheduler={address}: Dask's settings ask for encryption: tls://...")
-    # A lost worker is no news to the user: its tasks are tried again, or listed at the end.
-    logging.getLogger("distributed.client").setLevel(logging.ERROR)
+    # A lost worker is no news to the user: its tasks are tried again, or listed at the end. That
+    # the scheduler is lost is said below, in one line and not in a traceback.
+    for name in ("distributed", "distributed.client", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False, security=security)
     except (OSError, ValueError, TypeError, RuntimeError) as error:
