@@ -259,7 +259,7 @@ def test_minutes_are_kept_but_one_generation_is_tried(space, tmp_path):
         (["rolling_gains", "--trials", "0"], "rotctl: --trials=0: must be above 0"),
         (["rolling_gains", "--minutes", "nan"], "rotctl: --minutes=nan: must be above 0"),
         (["rolling_gains", "seed=5"], "rotctl: seed=5: tune draws the seeds of its runs itself"),
-        (["rolling_gains", "--jobs", "0"], "rotctl: --jobs=0: must be at least 1"),
+        (["rolling_gains", "--jobs", "0"], "rotctl: --jobs=0: valid: 1 to 1024"),
         (["rolling_gains", "x=1"], "rotctl: unknown key 'x'"),
     ],
 )

@@ -7,12 +7,18 @@ be opened with Optuna's own tools, such as optuna-dashboard.
 import json
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+from urllib.parse import quote
+
+from pydantic import Field
 
 from rotctl import files
+from rotctl.checked import checked
 from rotctl.errors import InputError
+from rotctl.settings import Finite, Fraction
 from rotctl.tune.sampler import distributions
 from rotctl.tune.space import Space
 from rotctl.tune.values import Values
@@ -23,6 +29,9 @@ if TYPE_CHECKING:
 STUDY_NAME = "study.db"
 _BESIDE = ("-journal", "-wal", "-shm")  # what SQLite adds to the name of a database
 _JOURNAL = bytes.fromhex("d9d505f920a163d7")  # at the end of one that names a super-journal
+
+
+MOST = 1_000_000  # generations, and candidates in one
 
 
 @dataclass(frozen=True)
@@ -37,20 +46,21 @@ class Trial:
         seconds: since the generation began, when its last run was done [s].
     """
 
-    generation: int
-    index: int
+    generation: Annotated[int, Field(ge=0, le=MOST)]
+    index: Annotated[int, Field(ge=0, le=MOST)]
     values: Values
-    score: float
-    finished: float
-    lost: int
-    seconds: float
+    score: Finite
+    finished: Fraction
+    lost: Annotated[int, Field(ge=0)]
+    seconds: Finite
 
 
 class History:
     """The trials of one search in one folder."""
 
-    def __init__(self, study: "Study", space: Space) -> None:
+    def __init__(self, study: "Study", space: Space, path: Path) -> None:
         self._study = study
+        self._path = path
         self._distributions = distributions(space)
 
     def add(self, trial: Trial) -> None:
@@ -69,11 +79,17 @@ class History:
         )
 
     def trials(self) -> list[Trial]:
-        """All trials, by generation and index."""
-        trials = (
-            Trial(values=dict(t.params), score=float(t.value or 0.0), **t.user_attrs)
-            for t in self._study.get_trials(deepcopy=False)
-        )
+        """All trials, by generation and index.
+
+        Raises:
+            InputError: the file holds something else, or is damaged.
+        """
+        with _refused(self._path):
+            kept = self._study.get_trials(deepcopy=False)
+            data = [t.user_attrs | {"values": t.params, "score": t.value} for t in kept]
+            trials = [checked(Trial, each) for each in data]
+            if any(trial.values.keys() != self._distributions.keys() for trial in trials):
+                raise InputError("its candidates have other parameters")
         return sorted(trials, key=lambda trial: (trial.generation, trial.index))
 
 
@@ -87,14 +103,13 @@ def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> Histor
         InputError: the folder cannot be written, or holds another search.
     """
     import optuna
-    from sqlalchemy.exc import SQLAlchemyError
 
     optuna.logging.set_verbosity(optuna.logging.WARNING)
     path = folder / STUDY_NAME
     _require_plain(path)
-    try:
+    with _refused(path):
         study = optuna.create_study(
-            storage=f"sqlite:///{path.resolve()}",
+            storage=f"sqlite:///{quote(str(path.resolve()))}",  # a "?" would end the path
             study_name="rotctl tune",
             direction="maximize",
             load_if_exists=True,
@@ -103,13 +118,24 @@ def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> Histor
         plain = json.loads(json.dumps(identity))
         if before is None:
             study.set_user_attr("identity", plain)
-    except (SQLAlchemyError, OSError, RuntimeError) as error:
-        reason = str(getattr(error, "orig", None) or error).splitlines()[0]
-        raise InputError(f"cannot use {path}: {reason}") from None
     changed = [] if before is None else list(_differences(before, plain))
     if changed:
         raise InputError(f"{folder} holds another search, with {changed[0]}; choose another --out")
-    return History(study, space)
+    return History(study, space, path)
+
+
+@contextmanager
+def _refused(path: Path) -> Iterator[None]:
+    """Whatever Optuna makes of a file that is no history becomes one line."""
+    from sqlalchemy.exc import SQLAlchemyError
+
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"cannot use {path}: it holds no trials: {error}") from None
+    except (SQLAlchemyError, OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
+        reason = (str(getattr(error, "orig", None) or error).splitlines() or ["damaged"])[0]
+        raise InputError(f"cannot use {path}: {reason:.200}") from None
 
 
 def _require_plain(path: Path) -> None:
