@@ -40,7 +40,7 @@ run: setup ## simulate a forward roll, with a progress bar; writes the log and a
 
 .PHONY: test
 test: lint ## lint, types, floors, then the fast tests
-	$(BIN)/python -m pytest --numprocesses auto
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 .PHONY: readme
 readme: setup ## put what `make run` prints into README.md, after a change that rolls otherwise

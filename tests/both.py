@@ -3,15 +3,17 @@
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from rotctl.control import Controller, Decision
+from rotctl.control import Command, Controller, Decision
 from rotctl.mechanics.state import State
 from rotctl.simulation.episode import Episode
 
 
 @dataclass(frozen=True)
 class Asked:
-    """One control step twice: states read and decisions."""
+    """One control step twice: what was asked, states read and decisions."""
 
+    command: Command
+    blend: float
     expected: State
     found: State
     slow: Decision
@@ -35,7 +37,7 @@ class Both:
         assert state is self._expected
         slow = self._slow.decide(state, command, blend)
         fast = self._fast.decide(self._found, command, blend)
-        self.asked = Asked(state, self._found, slow, fast)
+        self.asked = Asked(command, blend, state, self._found, slow, fast)
         return slow
 
 

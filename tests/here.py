@@ -31,9 +31,14 @@ class Here:
         pass
 
 
+def without_processes(patch):
+    """Let the commands carry their tasks out here."""
+    patch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
+
+
 def swept(out, *overrides):
     """Make a sweep, as the command does, but in this process."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
+        without_processes(patch)
         assert main(["sweep", *overrides, "--out", str(out), "--quiet"]) == 0
     return out

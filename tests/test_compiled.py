@@ -9,9 +9,11 @@ from both import along
 from questions import Asking, any_task
 
 from rotctl.config import load
-from rotctl.control import Controller, compiled
+from rotctl.control import Controller, compiled, literal
 from rotctl.control.compiled import CompiledStep
 from rotctl.control.kinds import KINDS, Kind, Rows
+from rotctl.control.pose import PoseTracker
+from rotctl.control.stack import collect
 from rotctl.mechanics.state import read
 from rotctl.scenario import build
 from rotctl.simulation.episode import Episode
@@ -21,6 +23,32 @@ pytestmark = pytest.mark.skipif(
     compiled.library() is None,
     reason="the compiled control step is not built here (no C compiler at installation)",
 )
+
+
+EXACT = 1e-8  # where both took the same way: 1e-11 of 6,000 states
+ALIKE = 0.1  # [N m]
+
+
+def cost(scenario, asked, decision):
+    """What the optimisation over the contacts that are used makes of a decision, by eq. 2."""
+    model, settings, command = scenario.model, scenario.controller.settings, asked.command
+    data = mujoco.MjData(model.mj)
+    data.qpos[:], data.qvel[:] = asked.expected.position, asked.expected.velocity
+    mujoco.mj_step1(model.mj, data)
+    state = read(model, data, merging=settings.merging)
+    poses = np.array((command.pose_a, command.pose_b))
+    torques = PoseTracker(model, 1.0 / settings.rate).torques(state, poses, command.pose)
+    stack = collect(model, state, command, settings, torques, asked.blend)
+    stack = stack.subset(decision.used[~command.held_out[state.contacts.body]])
+    force = np.einsum("mij,mj->mi", stack.frame, decision.force[decision.used]).ravel()
+    M, pushed = np.zeros((model.mj.nv, model.mj.nv)), stack.jacobian.T @ force - state.bias
+    mujoco.mj_fullM(model.mj, data, M)
+    pushed[model.joints] += decision.torque
+    x = np.concatenate((np.linalg.solve(M, pushed), decision.torque, force, [decision.blend]))
+    return sum(
+        0.5 * part.W @ (part.A @ x - part.b) ** 2
+        for part in literal.objectives(stack, model, state, M)
+    )
 
 
 @pytest.mark.parametrize(
@@ -37,18 +65,22 @@ pytestmark = pytest.mark.skipif(
 def test_same_torques_and_contacts_as_the_reference(overrides):
     """300 states each: 1800 in all."""
     dropped = limited = 0
-    for asked in along(build(load(overrides)), 300):
+    scenario = build(load(overrides))
+    for asked in along(scenario, 300):
         expected, found, slow, fast = asked.expected, asked.found, asked.slow, asked.fast
-        # Where the reference's first solver stopped short, its second one is as good, not the same.
-        exact = 1e-6 if fast.fallback == slow.fallback else 1e-5
-        scale = np.abs(slow.torque).max()
-        assert np.abs(fast.torque - slow.torque).max() <= exact * scale
         assert fast.used.tolist() == slow.used.tolist()
-        assert fast.blend == pytest.approx(slow.blend, abs=1e-6)
-        for name in ("force", "rates_wanted", "rates_predicted"):
-            expected_values = getattr(slow, name)
-            within = exact * max(100.0, np.abs(expected_values).max(initial=0.0))
-            assert getattr(fast, name) == pytest.approx(expected_values, abs=within)
+        assert fast.rates_wanted == pytest.approx(slow.rates_wanted, rel=EXACT, abs=EXACT)
+        if fast.fallback == slow.fallback:
+            for name in ("torque", "force", "rates_predicted", "blend"):
+                value = getattr(slow, name)
+                within = EXACT * max(100.0, np.abs(value).max(initial=0.0))
+                assert getattr(fast, name) == pytest.approx(value, abs=within), name
+        else:
+            # One's first solver stopped short, on a sum that the other rounds otherwise, and the
+            # next one answered. Where many forces do nearly as well theirs differ, by newtons even.
+            best = cost(scenario, asked, slow)
+            assert cost(scenario, asked, fast) == pytest.approx(best, rel=EXACT)
+            assert fast.torque == pytest.approx(slow.torque, abs=ALIKE)
         for name in vars(expected.momentum):
             a, b = getattr(found.momentum, name), getattr(expected.momentum, name)
             assert a == pytest.approx(b, rel=1e-9, abs=1e-9)

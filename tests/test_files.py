@@ -7,12 +7,11 @@ import sqlite3
 import struct
 
 import pytest
-from here import Here
+from here import without_processes
 
 from rotctl import files
 from rotctl.cli import main
 from rotctl.errors import InputError
-from rotctl.sweep import workers
 from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space
 
@@ -156,7 +155,7 @@ def test_a_folder_found_by_itself_is_no_link(folder, tmp_path):
 
 @pytest.fixture
 def cli(capsys, monkeypatch):
-    monkeypatch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
+    without_processes(monkeypatch)
 
     def call(*arguments):
         code = main([str(argument) for argument in arguments])

@@ -5,21 +5,21 @@ import os
 import shutil
 
 import pytest
+from here import swept, without_processes
 from test_summarise import change
 
 from rotctl.cli import main
 from rotctl.report.site import build
 from rotctl.results.table import table
 
-SWEEP = ["duration=0.5", "seed=range(0,2)", "--jobs", "1", "--quiet", "--out"]
+GRID = ("duration=0.5", "seed=range(0,2)")
+SWEEP = [*GRID, "--quiet", "--out"]
 COMMANDS = ("summarise", "report", "sweep")
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    out = tmp_path_factory.mktemp("made") / "sweep"
-    assert main(["sweep", *SWEEP, str(out)]) == 0
-    return out
+    return swept(tmp_path_factory.mktemp("made") / "sweep", *GRID)
 
 
 @pytest.fixture
@@ -30,7 +30,9 @@ def sweep(made, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def cli(capsys):
+def cli(capsys, monkeypatch):
+    without_processes(monkeypatch)
+
     def call(*arguments):
         code = main([str(argument) for argument in arguments])
         return (code, *capsys.readouterr())

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import h5py
 import pytest
-from here import Here
+from here import Here, without_processes
 from sweep_cli import logs, published
 
 from rotctl.cli import main
@@ -17,7 +17,6 @@ from rotctl.results.code import code_version
 from rotctl.results.manifest import read
 from rotctl.run import make
 from rotctl.run_folder import publish
-from rotctl.sweep import workers
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned
@@ -215,7 +214,7 @@ def test_a_failed_run_is_a_row_until_it_is_done(tmp_path):
 
 
 def test_a_breakdown_of_the_physics_fails_each_time_it_is_asked_for(cli, tmp_path, monkeypatch):
-    monkeypatch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
+    without_processes(monkeypatch)
     arguments = ["sweep", "duration=1", "start.speed_x=[1e12,1e12],[1,2]", "--out", tmp_path]
     for _ in range(2):
         code, stdout, stderr = cli(*arguments, "--quiet")
