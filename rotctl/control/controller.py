@@ -198,7 +198,7 @@ class _Told:
 
 
 def _told(stack: Stack, torque: Array, force: Array) -> _Told:
-    rates = product(stack.maps, force) + stack.gravity
+    rates = product(stack.maps, force) + stack.free_rates
     over_rates = product(stack.rate_rows, rates)
     passive = stack.drift + stack.wanted
     over_motion = product(stack.actuation, torque) + product(stack.mobility, force) + passive

@@ -100,9 +100,9 @@ def _momentum_matrix(state: State, M: Array) -> Array:
 
 
 def _momentum_bias(model: Model, state: State) -> Array:
-    """d(matrix)/dt qdot (6,): the root rows of C with gravity's part taken out."""
+    """d(matrix)/dt qdot (6,): the root rows of the motion's own forces, gravity's taken out."""
     gravity = np.concatenate((model.mass * model.gravity, np.zeros(3)))
-    return product(_to_com(state), state.bias[:ROOT_DOFS]) + gravity
+    return product(_to_com(state), state.data.qfrc_bias[:ROOT_DOFS]) + gravity
 
 
 def _to_com(state: State) -> Array:

@@ -49,7 +49,8 @@ class Stack:
         rate_wanted, rate_weight: (p,) likewise.
         mobility: A (n, 3m) [1/kg for contacts].
         actuation_square: B B' (n, n).
-        gravity: (6,) rates of [L, H] without contacts [N, N m].
+        free_rates: (6,) of [L, H] without contacts: gravity's, and those of the forces from
+            outside that control knows of [N, N m].
         frame: (m, 3, 3) the contacts' N, T1, T2, world axes.
         tasks: of the command, and where their rows stand.
     """
@@ -75,7 +76,7 @@ class Stack:
     rate_weight: Array
     mobility: Array
     actuation_square: Array
-    gravity: Array
+    free_rates: Array
     frame: Array
     tasks: tuple["TaskRows", ...]
 
@@ -106,8 +107,8 @@ class Stack:
 
     @property
     def momentum_pull(self) -> Array:
-        """And on contact forces (3m,): towards what is wanted beyond gravity."""
-        miss = self.rate_wanted - product(self.rate_rows, self.gravity)
+        """And on contact forces (3m,): towards what is wanted beyond the free rates."""
+        miss = self.rate_wanted - product(self.rate_rows, self.free_rates)
         return product(self.rate_weight * miss, self._push)
 
     @property
@@ -195,10 +196,19 @@ def collect(
         rate_weight=np.concatenate((np.zeros(0), *(rows.weight for rows in momentum))),
         mobility=product(solved[:-1], jacobian.T),
         actuation_square=product(actuation, actuation.T),
-        gravity=np.concatenate((model.mass * model.gravity, np.zeros(3))),
+        free_rates=_free_rates(model, state, settings.sees_disturbance),
         frame=frame,
         tasks=tasks,
     )
+
+
+def _free_rates(model: Model, state: State, sees_disturbance: bool) -> Array:
+    """Rates of [L, H] (6,) without contacts."""
+    rates = np.concatenate((model.mass * model.gravity, np.zeros(3)))
+    if sees_disturbance:  # what the bias holds beside gravity and the motion itself
+        outside = state.data.qfrc_bias - state.bias
+        rates += contact_momentum_maps(state.momentum, outside[None])[:, 0]
+    return rates
 
 
 def _along(

@@ -92,6 +92,7 @@ typedef struct Self {
   double *A, *BB, *GG;                             // (ROWS, FORCES), (ROWS, ROWS), (FORCES, FORCES)
   double frame[CONTACTS][9];                       // of the candidates, tangents along `forward`
   double maps[6][FORCES], pull[FORCES];            // of the candidates
+  double free_rates[6];                            // of [L, H] without contacts
   double drift[ROWS], wanted[ROWS], weight[ROWS];  // of the candidates' rows, then the tasks'
   double rate_rows[MOMENTA][6], rate_wanted[MOMENTA], rate_weight[MOMENTA];
   int momenta, motion_rows, first_row[TASKS], row_count[TASKS];

@@ -18,6 +18,25 @@ static void align(double* F, double* J, int nv, const double* forward) {
   }
 }
 
+// Rates of [L, H] that a generalised force on the root (6) brings about.
+static void to_rates(const Reading* r, const double* root, double* rates) {
+  double about[3], lever[3];
+  rotate(about, r->rotation, root + 3);
+  cross(lever, r->offset, root);
+  for (int a = 0; a < 3; a++) rates[a] = root[a], rates[3 + a] = about[a] - lever[a];
+}
+
+// What [L, H] do without contacts: gravity, and the forces from outside that control knows of.
+static void fall_free(Self* s, const mjData* d, const Reading* r) {
+  for (int a = 0; a < 3; a++)
+    s->free_rates[a] = s->c.mass * s->c.gravity[a], s->free_rates[3 + a] = 0;
+  if (!s->c.sees_disturbance) return;
+  double outside[ROOT], rates[6];
+  for (int i = 0; i < ROOT; i++) outside[i] = d->qfrc_bias[i] - s->bias[i];
+  to_rates(r, outside, rates);
+  for (int a = 0; a < 6; a++) s->free_rates[a] += rates[a];
+}
+
 // The tasks' rows: those over qddot after the `from` rows of contacts, the others by themselves.
 static int collect_tasks(Self* s, const mjData* d, const Reading* r, const Command* w, int from,
                          Answer* out) {
@@ -67,7 +86,7 @@ static int collect(Self* s, mjData* d, const Reading* r, const int* contact, int
   memcpy(s->jacobian + n * nv, s->bias, sizeof(double) * nv);
   s->mj.solveM(s->m, d, s->solved, s->jacobian, n + 1);
   const double* fall = s->solved + n * nv;
-  double gravity[6] = {c->mass * c->gravity[0], c->mass * c->gravity[1], c->mass * c->gravity[2]};
+  fall_free(s, d, r);
   for (int i = 0; i < n; i++) {
     const double* J = s->jacobian + i * nv;
     s->drift[i] = -dot(J, fall, nv) - s->wanted[i];
@@ -82,12 +101,10 @@ static int collect(Self* s, mjData* d, const Reading* r, const int* contact, int
   }
   double push[MOMENTA][FORCES];  // the momentum rows over contact forces
   for (int i = 0; i < m3; i++) {
-    const double* J = s->jacobian + i * nv;
-    double about[3], lever[3];
-    rotate(about, r->rotation, J + 3);
-    cross(lever, r->offset, J);
+    double rates[6];
+    to_rates(r, s->jacobian + i * nv, rates);
     s->pull[i] = 0;
-    for (int a = 0; a < 3; a++) s->maps[a][i] = J[a], s->maps[3 + a][i] = about[a] - lever[a];
+    for (int a = 0; a < 6; a++) s->maps[a][i] = rates[a];
     for (int q = 0; q < s->momenta; q++) {
       push[q][i] = 0;
       for (int a = 0; a < 6; a++) push[q][i] += s->rate_rows[q][a] * s->maps[a][i];
@@ -95,7 +112,7 @@ static int collect(Self* s, mjData* d, const Reading* r, const int* contact, int
   }
   for (int q = 0; q < s->momenta; q++) {
     double miss = s->rate_wanted[q];
-    for (int a = 0; a < 6; a++) miss -= s->rate_rows[q][a] * gravity[a];
+    for (int a = 0; a < 6; a++) miss -= s->rate_rows[q][a] * s->free_rates[a];
     for (int i = 0; i < m3; i++) s->pull[i] += push[q][i] * s->rate_weight[q] * miss;
   }
   for (int i = 0; i < m3; i++)

@@ -91,7 +91,7 @@ static void choose(const Self* s, Pass* p, const int* kept, int m, int k) {
 static void tell(const Self* s, const Pass* p, const Command* w, const double* force, Answer* out) {
   double rates[6];
   for (int a = 0; a < 6; a++) {
-    rates[a] = a < 3 ? s->c.mass * s->c.gravity[a] : 0;
+    rates[a] = s->free_rates[a];
     for (int i = 0; i < 3 * p->m; i++) rates[a] += s->maps[a][p->force[i]] * force[i];
     out->rates_predicted[a] = rates[a], out->rates_wanted[a] = 0;
   }
