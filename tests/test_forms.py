@@ -325,7 +325,7 @@ def test_a_target_that_is_met_is_kept(world, supported):
         tried += 1
         stack = replace(
             stack,
-            rate_wanted=stack.maps @ force.ravel() + stack.gravity,
+            rate_wanted=stack.maps @ force.ravel() + stack.free_rates,
             pose_a=torque,
             pose_b=torque,
             torque_limit=np.full(world.mj.nu, 2 * np.abs(torque).max()),
@@ -333,7 +333,7 @@ def test_a_target_that_is_met_is_kept(world, supported):
         found = condensed.solve(stack, BoxQP())
         scale = 1 + np.abs(torque).max()
         assert found.torque == pytest.approx(torque, abs=1e-4 * scale)
-        predicted = stack.maps @ found.force.ravel() + stack.gravity
+        predicted = stack.maps @ found.force.ravel() + stack.free_rates
         wanted = stack.rate_wanted
         assert predicted == pytest.approx(wanted, abs=1e-3 * (1 + np.abs(wanted).max()))
         assert found.blend == pytest.approx(stack.blend, abs=1e-4)
