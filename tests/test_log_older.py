@@ -36,7 +36,7 @@ def test_it_opens_and_is_whole(path):
     log.verify()
     assert (log.attributes["schema_version"], log.steps) == (2, 6)
     assert log.outcome["behaviour"] == "forward_roll_1"
-    assert set(SCHEMA) - set(log.names) == NEWER
+    assert set(SCHEMA) - set(log.names) >= NEWER
     assert names_of(2) == log.names
     assert names_of(SCHEMA_VERSION) == tuple(SCHEMA)
     for name in log.names:
@@ -103,5 +103,5 @@ def test_inspect_shows_what_it_has(path, capsys):
     said = capsys.readouterr().out
     assert "  schema 2\n" in said
     assert "contacts/force_realised" in said
-    assert not any(name in said for name in NEWER - {"contacts/ground_force"})
+    assert not any(f"{name} " in said for name in NEWER)
     assert said.endswith("\nintegrity  complete, checksums match\n")

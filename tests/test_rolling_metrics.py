@@ -19,6 +19,7 @@ from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_a
 PERIOD = 1.0 / 60.0
 CRITERIA = RollingCriteria(
     name="test",
+    kind="rolling",
     stall_time=1.5,
     stall_progress=0.1,
     revolution_time=6.0,
