@@ -4,6 +4,7 @@ Serves the condensed form with boxqp, which is the default.
 """
 
 import ctypes
+from math import prod
 from typing import Any
 
 import mujoco
@@ -22,27 +23,17 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum
 from rotctl.mechanics.state import State
 from rotctl.native import functions, library
+from rotctl.native.layout import constant, structure
 from rotctl.qp.scaling import DIAGONAL, TOLERANCE
 
-CAPACITY, TASKS, LARGEST_TRUNK = 64, 16, 16  # CONTACTS and TASKS in native/layout.h
-SUPERVISORS = {"as_written": 0, "modified": 1, "none": 2}
-FAILED = -1
+SUPERVISORS = {
+    "as_written": constant("AS_WRITTEN"),
+    "modified": constant("MODIFIED"),
+    "none": constant("NO_SUPERVISOR"),
+}
+FAILED = constant("FAILED")
 
-_double, _int, _pointer = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
-
-
-class _Constants(ctypes.Structure):
-    _fields_ = [
-        *((name, _double) for name in ("period", "friction", "diagonal", "tolerance", "slack")),
-        *((name, _double) for name in ("touch", "look_ahead", "merge_distance")),
-        *((name, _double) for name in ("merge_parallel", "mass")),
-        ("gravity", _double * 3),
-        ("sees_disturbance", _int),
-        ("trunk_count", _int),
-        ("trunk", _int * LARGEST_TRUNK),
-        ("trunk_weight", _double * LARGEST_TRUNK),
-        *((name, _pointer) for name in ("torque_limit", "armature", "joint_range")),
-    ]
+_pointer = ctypes.c_void_p
 
 
 # Names and shapes of what a reading begins with.
@@ -53,48 +44,8 @@ _MOMENTUM = {
     "root_rotation": (3, 3),
     "root_offset": (3,),
 }
-_MOMENTUM_SIZE = sum(int(np.prod(shape)) for shape in _MOMENTUM.values())
-
-
-class _Reading(ctypes.Structure):
-    _fields_ = [
-        ("momentum", _double * _MOMENTUM_SIZE),
-        ("trunk_axes", _double * 9),
-        ("position", _double * (3 * CAPACITY)),
-        ("frame", _double * (9 * CAPACITY)),
-        ("friction", _double * (2 * CAPACITY)),
-        ("gap", _double * CAPACITY),
-        ("body", _int * CAPACITY),
-        ("row", ctypes.c_longlong * CAPACITY),
-        ("count", _int),
-        ("bias", _pointer),
-    ]
-
-
-class _Command(ctypes.Structure):
-    _fields_ = [
-        ("forward", _double * 3),
-        ("blend", _double),
-        *((f"pose_{name}", _double) for name in ("stiffness", "damping", "horizon", "weight")),
-        ("blend_weight", _double),
-        *((f"contact_{name}", _double) for name in ("damping", "weight", "force")),
-        *((f"threshold_{name}", _double) for name in ("force", "torque", "separation")),
-        ("supervisor", _int),
-        ("tasks", _int),
-        *((name, _pointer) for name in ("task", "pose_a", "pose_b", "held_out")),
-    ]
-
-
-class _Answer(ctypes.Structure):
-    _fields_ = [
-        ("force", _double * (3 * CAPACITY)),
-        ("rates", _double * 12),
-        ("blend", _double),
-        ("residual", _double),
-        ("told", _double * (3 * 3 * TASKS)),
-        ("torque", _pointer),
-        ("used", ctypes.c_ubyte * CAPACITY),
-    ]
+_MOMENTUM_SIZE = sum(map(prod, _MOMENTUM.values()))
+_READ = ("trunk_axes", "position", "frame", "friction", "gap", "body", "row")
 
 
 def serves(settings: ControllerSettings, model: Model) -> bool:
@@ -103,7 +54,7 @@ def serves(settings: ControllerSettings, model: Model) -> bool:
         settings.solver == "boxqp"
         and settings.form == "condensed"
         and model.mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
-        and len(model.trunk) <= LARGEST_TRUNK
+        and len(model.trunk) <= constant("TRUNK")
     )
 
 
@@ -118,7 +69,9 @@ class CompiledStep:
         self._library = _prepared(found)
         self._scratch = mujoco.MjData(model.mj)
         self._kept = (model, model.torque_limit, model.armature, model.joint_range)
-        self._reading, self._command, self._answer = _Reading(), _Command(), _Answer()
+        self._reading, self._command, self._answer = (
+            structure(name)() for name in ("Reading", "Command", "Answer")
+        )
         self._torque, self._bias = np.zeros(model.mj.nu), np.zeros(model.mj.nv)
         self._answer.torque = self._torque.ctypes.data
         self._reading.bias = self._bias.ctypes.data
@@ -140,12 +93,13 @@ class CompiledStep:
         self._pointers = [
             ctypes.addressof(part) for part in (self._reading, self._command, self._answer)
         ]
-        self._read = {name: _view(self._reading, name) for name in _names(_Reading)}
+        self._momentum = _block(self._reading, "com", _MOMENTUM_SIZE)
+        self._read = {name: _view(self._reading, name) for name in _READ}
         self._forward = _view(self._command, "forward")
-        self._force = _view(self._answer, "force").reshape(CAPACITY, 3)
+        self._force = _view(self._answer, "force")
         self._used = _view(self._answer, "used").view(bool)
-        self._rates = _view(self._answer, "rates").reshape(2, 6)
-        self._told = _view(self._answer, "told").reshape(3, TASKS, 3)
+        self._rates = _block(self._answer, "rates_wanted", 2, 6)
+        self._told = _block(self._answer, "error", 3, constant("TASKS"), 3)
         self._gains: tuple[PoseGains, ContactGains, Thresholds] | None = None
         self._last: State | None = None
 
@@ -160,22 +114,22 @@ class CompiledStep:
         m = self._library.rotctl_read(self._self, data._address, self._pointers[0])
         if m == FAILED:
             return None
-        found = self._read
+        read = self._read
         self._last = State(
             time=data.time,
             position=data.qpos.copy(),
             velocity=data.qvel.copy(),
             bias=self._bias.copy(),
-            momentum=_momentum(found["momentum"].copy()),
+            momentum=_momentum(self._momentum.copy()),
             contacts=Contacts(
-                body=found["body"][:m].copy(),
-                position=found["position"][: 3 * m].reshape(m, 3).copy(),
-                frame=found["frame"][: 9 * m].reshape(m, 3, 3).copy(),
-                row=found["row"][:m].copy(),
-                friction=found["friction"][: 2 * m].reshape(m, 2).copy(),
-                gap=found["gap"][:m].copy(),
+                body=read["body"][:m].copy(),
+                position=read["position"][:m].copy(),
+                frame=read["frame"][:m].reshape(m, 3, 3).copy(),
+                row=read["row"][:m].copy(),
+                friction=read["friction"][:m].copy(),
+                gap=read["gap"][:m].copy(),
             ),
-            trunk_axes=found["trunk_axes"].reshape(3, 3).copy(),
+            trunk_axes=read["trunk_axes"].reshape(3, 3).copy(),
             data=data,
         )
         return self._last
@@ -235,14 +189,10 @@ class CompiledStep:
 
 def _prepared(found: ctypes.CDLL) -> ctypes.CDLL:
     """The library with its signatures, if Python and C agree on what they hand each other."""
-    sizes = [TASK.itemsize, *map(ctypes.sizeof, (_Constants, _Reading, _Command, _Answer))]
-    theirs = (_int * len(sizes))()
-    found.rotctl_sizes.argtypes = [_pointer]
-    found.rotctl_sizes(ctypes.addressof(theirs))
-    if list(theirs) != sizes:
-        raise RotctlError(
-            f"the compiled control step has structures of {list(theirs)}, not {sizes}"
-        )
+    theirs, ours = structure("Task"), dict(TASK.fields or {})
+    places = [(name, getattr(theirs, name).offset) for name, *_ in theirs._fields_]
+    if places != [(name, field[1]) for name, field in ours.items()]:
+        raise RotctlError("native/layout.h and rotctl.control.task differ in what a task is")
     found.rotctl_new.restype = _pointer
     found.rotctl_new.argtypes = [_pointer] * 6
     found.rotctl_free.argtypes = [_pointer]
@@ -259,26 +209,29 @@ def _address(found: ctypes.CDLL, name: str) -> int | None:
         return None
 
 
-def _names(structure: type[ctypes.Structure]) -> list[str]:
-    return [field[0] for field in structure._fields_ if field[0] not in ("count", "bias")]
+def _view(shared: ctypes.Structure, name: str) -> NDArray[Any]:
+    return np.ctypeslib.as_array(getattr(shared, name))
 
 
-def _view(structure: ctypes.Structure, name: str) -> NDArray[Any]:
-    return np.ctypeslib.as_array(getattr(structure, name))
+def _block(shared: ctypes.Structure, first: str, *shape: int) -> NDArray[np.float64]:
+    """Several members in one array from the `first` on: one copy is cheaper than one of each."""
+    start = getattr(type(shared), first).offset
+    block = np.frombuffer(shared, float, prod(shape), start)  # type: ignore[call-overload]
+    return np.asarray(block).reshape(shape)
 
 
 def _momentum(block: NDArray[np.float64]) -> Momentum:
     """Cut from one block, which is cheaper than a copy each."""
     parts, at = {}, 0
     for name, shape in _MOMENTUM.items():
-        size = 3 if len(shape) == 1 else 9
+        size = prod(shape)
         parts[name] = block[at : at + size].reshape(shape)
         at += size
     return Momentum(**parts)
 
 
-def _constants(model: Model, settings: ControllerSettings) -> _Constants:
-    constants = _Constants(
+def _constants(model: Model, settings: ControllerSettings) -> ctypes.Structure:
+    constants = structure("Constants")(
         period=1.0 / settings.rate,
         friction=settings.friction,
         diagonal=DIAGONAL,

@@ -2,19 +2,6 @@
 #include "layout.h"
 #include "small.h"
 
-enum { SLOTS = 1024 };
-
-// Of one control period; mirrored by `_Sums` in ground_forces.py.
-typedef struct {
-  double position[SLOTS][3], normal[SLOTS][3];
-  double force[SLOTS][3], now[SLOTS][3], peak[SLOTS];
-  double total[3], total_peak, penetration;
-  int body[SLOTS];
-  int count;
-} Sums;
-
-int rotctl_ground_size(void) { return sizeof(Sums); }
-
 static double length(const double* v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 // The nearest slot of that body; a new one if it has none; -1 if there is no room.

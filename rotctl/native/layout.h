@@ -1,11 +1,12 @@
-// What Python and C hand each other. Mirrored by rotctl/control/compiled.py and task.py, which
-// compare the sizes; a library that was built from other source is refused.
+// What Python and C hand each other; rotctl/native/layout.py reads it here. A library that was
+// built from other source is refused.
 #ifndef ROTCTL_LAYOUT_H
 #define ROTCTL_LAYOUT_H
 
 #include <mujoco/mujoco.h>
 
-enum { SEEN = 1024, CONTACTS = 64, TASKS = 16, MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
+enum { SEEN = 1024, CONTACTS = 64, TASKS = 16, TRUNK = 16, SLOTS = 1024 };
+enum { MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
 enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
 
@@ -34,13 +35,13 @@ typedef struct {
   double period, friction, diagonal, tolerance, slack, touch, look_ahead, merge_distance;
   double merge_parallel, mass, gravity[3];
   int sees_disturbance, trunk_count;
-  int trunk[16];
-  double trunk_weight[16];
+  int trunk[TRUNK];
+  double trunk_weight[TRUNK];
   const double *torque_limit, *armature;  // (nu)
   const double* joint_range;              // (nu, 2)
 } Constants;
 
-// The state that `rotctl_read` finds. The bias is (nv).
+// The state that `rotctl_read` finds: first a `Momentum`, in its order. The bias is (nv).
 typedef struct {
   double com[3], com_velocity[3], linear[3], angular[3], inertia[9], angular_velocity[3];
   double rotation[9], offset[3], trunk_axes[9];
@@ -72,6 +73,15 @@ typedef struct {
   double* torque;
   unsigned char used[CONTACTS];
 } Answer;
+
+// The ground's forces in one control period.
+typedef struct {
+  double position[SLOTS][3], normal[SLOTS][3];
+  double force[SLOTS][3], now[SLOTS][3], peak[SLOTS];
+  double total[3], total_peak, penetration;
+  int body[SLOTS];
+  int count;
+} Sums;
 
 struct Self;
 // A kind of objective: fills rows (k, nv) or, of momentum, (k, 6); returns k.

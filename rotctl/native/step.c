@@ -27,11 +27,6 @@
 const char* rotctl_source(void) { return ROTCTL_SOURCE; }
 int rotctl_mujoco_version(void) { return mjVERSION_HEADER; }
 
-void rotctl_sizes(int* out) {
-  out[0] = sizeof(Task), out[1] = sizeof(Constants), out[2] = sizeof(Reading);
-  out[3] = sizeof(Command), out[4] = sizeof(Answer);
-}
-
 void rotctl_free(Self* s) {
   double* all[] = {s->bias, s->diagonal, s->jacobian, s->solved, s->tau_a, s->tau_b,
                    s->difference, s->torque, s->A, s->BB, s->GG, s->reach, s->Q, s->H, s->f,

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from rotctl.errors import RotctlError
 from rotctl.mechanics.contacts import Contacts, read_contacts, realised_forces
 from rotctl.native import library
+from rotctl.native.layout import constant, structure
 from rotctl.rotations import Array
 
-SLOTS = 1024  # as in ground_forces.c; what a log row can hold at most
+SLOTS = constant("SLOTS")  # what a log row can hold at most
 
 
 @dataclass(frozen=True)
@@ -89,11 +90,11 @@ class Reference:
 
     def add(self, data: mujoco.MjData) -> None:
         """See `Sums`."""
-        found = read_contacts(self._mj, data, touch=np.inf)
-        forces = realised_forces(self._mj, data, found)
+        contacts = read_contacts(self._mj, data, touch=np.inf)
+        forces = realised_forces(self._mj, data, contacts)
         now: dict[int, Array] = {}
         for i in np.flatnonzero(forces.any(axis=1)):
-            slot = self._slot(int(found.body[i]), found.position[i], found.frame[i, 0])
+            slot = self._slot(int(contacts.body[i]), contacts.position[i], contacts.frame[i, 0])
             if slot is not None:
                 now[slot] = now.get(slot, np.zeros(3)) + forces[i]
         for slot, force in now.items():
@@ -102,7 +103,7 @@ class Reference:
         total = forces.sum(axis=0)
         self._total += total
         self._total_peak = max(self._total_peak, _length(total))
-        self._penetration = max(self._penetration, float(-found.gap.min(initial=0.0)))
+        self._penetration = max(self._penetration, float(-contacts.gap.min(initial=0.0)))
         self._steps += 1
 
     def _slot(self, body: int, position: Array, normal: Array) -> int | None:
@@ -137,21 +138,6 @@ def _length(vector: Array) -> float:
     return float(np.sqrt((vector**2).sum()))
 
 
-_double, _int, _pointer = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
-
-
-class _Sums(ctypes.Structure):
-    _fields_ = [
-        *((name, _double * (3 * SLOTS)) for name in ("position", "normal", "force", "now")),
-        ("peak", _double * SLOTS),
-        ("total", _double * 3),
-        ("total_peak", _double),
-        ("penetration", _double),
-        ("body", _int * SLOTS),
-        ("count", _int),
-    ]
-
-
 class Compiled:
     """`Sums` in C; `library()` must be there."""
 
@@ -159,16 +145,15 @@ class Compiled:
         """For the first tree of `mj` as the character."""
         self._add = _function()
         self._mj = mj  # keeps what the address points to
-        self._sums = _Sums()
+        self._sums = structure("Sums")()
         self._model, self._address = mj._address, ctypes.addressof(self._sums)
         view = {
             name: np.ctypeslib.as_array(getattr(self._sums, name))
             for name in ("position", "normal", "force", "now", "peak", "total", "body")
         }
         self._body, self._peak, self._total = view["body"], view["peak"], view["total"]
-        self._position, self._normal, self._force, self._now = (
-            view[name].reshape(SLOTS, 3) for name in ("position", "normal", "force", "now")
-        )
+        self._position, self._normal = view["position"], view["normal"]
+        self._force, self._now = view["force"], view["now"]
         self._steps = 0
 
     def begin(self, contacts: Contacts) -> None:
@@ -205,12 +190,9 @@ class Compiled:
 
 @lru_cache(maxsize=1)
 def _function() -> Callable[[int, int, int], None]:
-    found = library()
-    if found is None:
+    built = library()
+    if built is None:
         raise RotctlError("the compiled sums of ground forces are not built")
-    theirs, ours = found.rotctl_ground_size(), ctypes.sizeof(_Sums)
-    if theirs != ours:
-        raise RotctlError(f"the compiled sums of ground forces are of {theirs} bytes, not {ours}")
-    function: Callable[[int, int, int], None] = found.rotctl_ground_add
-    function.argtypes, function.restype = [_pointer] * 3, None  # type: ignore[attr-defined]
+    function: Callable[[int, int, int], None] = built.rotctl_ground_add
+    function.argtypes, function.restype = [ctypes.c_void_p] * 3, None  # type: ignore[attr-defined]
     return function
