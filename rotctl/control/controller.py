@@ -1,26 +1,23 @@
-"""The whole-body controller: two passes of the optimisation with the supervisor between."""
+"""The whole-body controller: the compiled step, or its reference and a chain of fallbacks."""
 
 from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-from rotctl.control import condensed, literal
-from rotctl.control.answer import Answer
 from rotctl.control.compiled import CompiledStep, serves
 from rotctl.control.decision import POSE_ONLY, SOLVED_BY_FALLBACK, Decision
+from rotctl.control.passes import Link, pose_only
 from rotctl.control.pose import PoseTracker
 from rotctl.control.settings import BackendName, ControllerSettings
 from rotctl.control.stack import Stack, collect
-from rotctl.control.supervisor import RULES, Evidence
 from rotctl.control.task import Command
 from rotctl.errors import InputError
 from rotctl.linear import product
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.native.library import NOT_BUILT, library
-from rotctl.qp import Solution, Solver, make_solver
+from rotctl.qp import Solver, make_solver
 from rotctl.qp.active_set import ActiveSet
 from rotctl.rotations import Array
 
@@ -31,6 +28,7 @@ class Controller:
     """Reads the state and decides torques; keeps workspaces, but no memory of the past.
 
     Attributes:
+        chain: the ways to solve a step, each for where those before it fail.
         backend: `compiled` or `reference`, whichever really works here.
         notice: what a user should know about that; mostly empty.
     """
@@ -55,10 +53,10 @@ class Controller:
         self.model = model
         self.settings = settings
         self._tracker = PoseTracker(model, 1.0 / settings.rate)
-        self.chain: list[tuple[str, Solver]] = [(settings.form, solver)]
+        self.chain = [Link(settings.form, solver)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
-            self.chain.append(("condensed", make_solver("boxqp")))
-        self.chain.append(("condensed", ActiveSet()))
+            self.chain.append(Link("condensed", make_solver("boxqp")))
+        self.chain.append(Link("condensed", ActiveSet()))
         wanted = settings.backend == "compiled" and serves(settings, model)
         self._step = CompiledStep(model, settings) if wanted and library() else None
         self.backend: BackendName = "compiled" if self._step else "reference"
@@ -89,24 +87,24 @@ class Controller:
         stack = collect(self.model, state, command, self.settings, torques, blend)
         iterations = 0
         reasons: list[str] = []
-        for form, solver in self.chain:
-            outcome = self._two_passes(form, solver, stack, state, command)
-            iterations += outcome.iterations
-            if not outcome.reason:
+        for link in self.chain:
+            passes = link.passes(stack, self.model, state, command)
+            iterations += passes.iterations
+            if not passes.reason:
                 break
-            reasons.append(f"{form} {solver.name}: {outcome.reason}")
+            reasons.append(f"{link.form} {link.solver.name}: {passes.reason}")
         else:
-            outcome = _pose_only(stack)
+            passes = pose_only(stack)
         candidates = ~command.held_out[state.contacts.body]
         used = np.zeros(len(candidates), dtype=bool)
-        used[candidates] = outcome.kept
+        used[candidates] = passes.kept
         force = np.zeros((len(used), 3))
-        answer = outcome.answer
-        force[used] = np.einsum("mij,mi->mj", outcome.stack.frame, answer.force)
+        answer = passes.answer
+        force[used] = np.einsum("mij,mi->mj", passes.stack.frame, answer.force)
         failures = len(reasons)
         all_failed = failures == len(self.chain)
         torque = np.clip(answer.torque, -stack.torque_limit, stack.torque_limit)
-        told = _told(outcome.stack, torque, answer.force.ravel())
+        told = _told(passes.stack, torque, answer.force.ravel())
         return Decision(
             torque=torque,
             blend=min(max(answer.blend, 0.0), 1.0),
@@ -123,69 +121,6 @@ class Controller:
             residual=answer.solution.residual,
             reasons=tuple(reasons),
         )
-
-    def _two_passes(
-        self, form: str, solver: Solver, stack: Stack, state: State, command: Command
-    ) -> "_Outcome":
-        """The optimisation over all candidate contacts, then over those that pass the test."""
-        everything = np.ones(stack.contacts, dtype=bool)
-        first = self._pass(form, solver, stack, state, None)
-        outcome = _Outcome(first, stack, everything, first.solution.iterations)
-        rule = RULES.get(command.supervisor)
-        if outcome.reason or rule is None:
-            return outcome
-        keep = rule(_evidence(first, stack, state), command.thresholds)
-        if keep.all():
-            return outcome
-        subset = stack.subset(keep)
-        start = condensed.warm_start(first, keep, solver) if form == "condensed" else None
-        second = self._pass(form, solver, subset, state, start)
-        return _Outcome(second, subset, keep, outcome.iterations + second.solution.iterations)
-
-    def _pass(
-        self, form: str, solver: Solver, stack: Stack, state: State, start: Array | None
-    ) -> Answer:
-        if form == "literal":
-            return literal.solve(stack, self.model, state, solver)
-        return condensed.solve(stack, solver, start)
-
-
-@dataclass(frozen=True)
-class _Outcome:
-    """The last pass of one link: its answer over `stack`, and which candidates were kept."""
-
-    answer: Answer
-    stack: Stack
-    kept: NDArray[np.bool_]
-    iterations: int
-
-    @property
-    def reason(self) -> str:
-        """Why the answer cannot be used; empty if it can."""
-        if not self.answer.solution.solved:
-            return self.answer.solution.reason
-        return "" if np.isfinite(self.answer.torque.sum()) else "torques are not finite"
-
-
-def _evidence(first: Answer, stack: Stack, state: State) -> Evidence:
-    m = stack.contacts
-    per_contact = stack.maps[3:].reshape(3, m, 3)  # torque about the CM per force component
-    torque = np.einsum("amc,mc->ma", per_contact, first.force)
-    normal_rows = stack.jacobian[::3]
-    return Evidence(
-        force=np.sqrt((first.force**2).sum(axis=1)),
-        torque=np.sqrt((torque**2).sum(axis=1)),
-        separation=product(normal_rows, state.velocity),
-    )
-
-
-def _pose_only(stack: Stack) -> _Outcome:
-    """Track the previous blend of the two poses, plan with no contact."""
-    nothing = np.zeros(stack.contacts, dtype=bool)
-    torque = stack.blend * stack.pose_a + (1.0 - stack.blend) * stack.pose_b
-    solution = Solution(np.empty(0), True, 0, float("nan"))
-    answer = Answer(torque, np.empty((0, 3)), stack.blend, solution)
-    return _Outcome(answer, stack.subset(nothing), nothing, 0)
 
 
 @dataclass(frozen=True)
