@@ -16,7 +16,7 @@ from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
-from rotctl.results.found import found
+from rotctl.results.stored_runs import stored_runs
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.table import Table, table
@@ -172,7 +172,7 @@ def test_a_damaged_log_is_a_row_and_leftovers_are_not(sweep):
 def test_runs_below_deeper_folders_count_once(made, tmp_path):
     for name in ("one", "two"):
         shutil.copytree(made, tmp_path / name)
-    runs, copies = found(tmp_path)
+    runs, copies = stored_runs(tmp_path)
     assert len(runs) == 6
     assert len(copies) == 6
     assert copies[0].endswith("again, counted once")

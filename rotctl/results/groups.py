@@ -12,7 +12,7 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.metrics.rates import wilson
 from rotctl.metrics.rolling import IN_FILES_ONLY
-from rotctl.results.found import DONE
+from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
 
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}

@@ -8,8 +8,8 @@ from pathlib import Path
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
 from rotctl.results.experiments import Experiment, copies, read
-from rotctl.results.found import Found, found
 from rotctl.results.manifest import MANIFEST_NAME
+from rotctl.results.stored_runs import StoredRun, stored_runs
 from rotctl.results.table import Table, tabulated
 
 
@@ -26,7 +26,7 @@ class Sweep:
 
     name: str
     folder: Path
-    runs: Mapping[str, Found]
+    runs: Mapping[str, StoredRun]
     table: Table
     experiments: Mapping[str, Experiment]
     notes: list[str]
@@ -71,7 +71,7 @@ def _places(folder: Path) -> tuple[list[Path], list[Path]]:
 
 
 def _sweep(place: Path, folder: Path) -> Sweep:
-    runs, copied = found(place)
+    runs, copied = stored_runs(place)
     table = tabulated(runs, copied)
     experiments, wrong = {}, []
     for name, path in copies(place).items():

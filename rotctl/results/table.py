@@ -12,8 +12,8 @@ import pandas as pd
 
 from rotctl.documents import from_yaml
 from rotctl.errors import InputError
-from rotctl.results.found import DAMAGED, FAILED, MISSING, Found, found
 from rotctl.results.keys import value_at
+from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
 # What is no metric, and what `rotctl.results.groups` and the report add.
@@ -47,10 +47,10 @@ def table(folder: Path) -> Table:
     Raises:
         InputError: there is no such folder, or no run in it.
     """
-    return tabulated(*found(folder))
+    return tabulated(*stored_runs(folder))
 
 
-def tabulated(runs: Sequence[Found], notes: list[str]) -> Table:
+def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
     """Runs that were found, in the order of their keys."""
     configs = {run.run_id: config_of(run.config) for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
@@ -93,7 +93,7 @@ def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
     return columns
 
 
-def _missing(runs: Iterable[Found]) -> list[str]:
+def _missing(runs: Iterable[StoredRun]) -> list[str]:
     notes = [
         f"{run.run_id}: {run.status}: {run.reason}"
         for run in runs

@@ -11,7 +11,7 @@ import numpy as np
 from rotctl.documents import from_json
 from rotctl.report.site.words import NOTHING, count, number, ranges
 from rotctl.report.title import plain
-from rotctl.results.found import DONE, Found
+from rotctl.results.stored_runs import DONE, StoredRun
 from rotctl.results.sweeps import Sweep
 from rotctl.results.table import without_seed
 
@@ -41,7 +41,7 @@ def origin(sweep: Sweep) -> list[tuple[str, list[str]]]:
     ]
 
 
-def config_hash(run: Found) -> str:
+def config_hash(run: StoredRun) -> str:
     """First digits of the SHA-256 of a run's config, its seed left out."""
     return sha256(without_seed(run.config).encode()).hexdigest()[:12]
 

@@ -8,7 +8,7 @@ import pandas as pd
 from rotctl.report.axes import BLUE, GREEN, ORANGE
 from rotctl.report.site.panels import Paper
 from rotctl.report.site.words import count, kind
-from rotctl.results.found import DONE
+from rotctl.results.stored_runs import DONE
 
 # Blue is for success.
 COLOURS = (ORANGE, "#e69f00", "#cc79a7", GREEN, "#8a929c", "#b8860b", "#6a3d9a")

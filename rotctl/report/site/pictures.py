@@ -11,7 +11,7 @@ from rotctl.report import replay
 from rotctl.report.filmstrip import strip
 from rotctl.report.site.rows import Row
 from rotctl.report.title import title
-from rotctl.results.found import Found
+from rotctl.results.stored_runs import StoredRun
 
 FRAMES, SIZE = 6, (240, 188)  # of a filmstrip; pixels of a frame
 SCRIPT = "replay.js"
@@ -56,7 +56,7 @@ def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
     return found
 
 
-def _picture(role: str, run: Found, folder: Path, name: str, put: Put) -> Picture:
+def _picture(role: str, run: StoredRun, folder: Path, name: str, put: Put) -> Picture:
     address, drawn, trouble = "", "", ""
     try:
         log = RunLog.open(folder / run.log, linked=False)

@@ -12,8 +12,8 @@ from rotctl.metrics.claims import SUCCESS_RATE, Judged, Measured, judge, measure
 from rotctl.report.site.words import kind, values
 from rotctl.report.title import plain
 from rotctl.results.experiments import Experiment
-from rotctl.results.found import Found
 from rotctl.results.keys import value_at
+from rotctl.results.stored_runs import StoredRun
 from rotctl.results.sweeps import Sweep
 from rotctl.results.table import config_of
 
@@ -53,8 +53,8 @@ class Row:
     worst: float | None
     missing: int
     failures: tuple[tuple[str, int], ...]
-    median: Found | None
-    poorest: Found | None
+    median: StoredRun | None
+    poorest: StoredRun | None
     deviations: tuple[str, ...]
 
 

@@ -20,7 +20,7 @@ DONE, FAILED, MISSING, DAMAGED = "done", "failed to run", "not run", "damaged"
 
 
 @dataclass(frozen=True)
-class Found:
+class StoredRun:
     """A run below the folder, or the place of one.
 
     Attributes:
@@ -45,7 +45,7 @@ class Found:
     origin: Mapping[str, Any] = field(default_factory=dict)
 
 
-def found(folder: Path) -> tuple[list[Found], list[str]]:
+def stored_runs(folder: Path) -> tuple[list[StoredRun], list[str]]:
     """All runs below a folder, each once, and the logs that were left out as copies.
 
     Raises:
@@ -56,7 +56,7 @@ def found(folder: Path) -> tuple[list[Found], list[str]]:
     names = (LOG_NAME, MANIFEST_NAME)
     paths = sorted(Path(at, name) for at, _, inside in os.walk(folder) for name in inside)
     entries: dict[str, Entry] = {}
-    runs: dict[str, Found] = {}
+    runs: dict[str, StoredRun] = {}
     copies = []
     for path in (path for path in paths if path.name in names):
         if path.name == MANIFEST_NAME:
@@ -74,12 +74,12 @@ def found(folder: Path) -> tuple[list[Found], list[str]]:
     return known + missing, copies
 
 
-def _logged(path: Path, log: str) -> Found:
+def _logged(path: Path, log: str) -> StoredRun:
     try:
         attributes = read_attributes(path, linked=False)
         outcome = outcome_of(str(attributes["outcome"]))
         require_verdict(outcome)
-        return Found(
+        return StoredRun(
             str(attributes["run_id"]),
             DONE,
             outcome=outcome,
@@ -89,14 +89,14 @@ def _logged(path: Path, log: str) -> Found:
             origin={name: attributes[name] for name in ORIGIN},
         )
     except LogError as error:
-        return Found(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
+        return StoredRun(path.parent.name, DAMAGED, str(error).removeprefix(f"{path}: "), log=log)
 
 
-def _unlogged(entry: Entry) -> Found:
+def _unlogged(entry: Entry) -> StoredRun:
     status = FAILED if entry.failure else MISSING
-    return Found(entry.run_id, status, entry.failure, values=entry.values)
+    return StoredRun(entry.run_id, status, entry.failure, values=entry.values)
 
 
-def _with_values(run: Found, entries: Mapping[str, Entry]) -> Found:
+def _with_values(run: StoredRun, entries: Mapping[str, Entry]) -> StoredRun:
     entry = entries.get(run.run_id)
     return replace(run, values=entry.values) if entry else run
