@@ -137,7 +137,7 @@ def _absurd(parts: Way, value: Any) -> str:
 
 def to_dict(config: Config) -> dict[str, Any]:
     """The config as plain data."""
-    plain: dict[str, Any] = adapter(Config).dump_python(config)  # much faster than asdict
+    plain: dict[str, Any] = adapter(Config).dump_python(config)  # asdict takes 2 ms
     return plain
 
 
