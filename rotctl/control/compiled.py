@@ -31,7 +31,7 @@ SUPERVISORS = {
     "modified": constant("MODIFIED"),
     "none": constant("NO_SUPERVISOR"),
 }
-FAILED = constant("FAILED")
+FAILED, TASKS = constant("FAILED"), constant("TASKS")
 
 _pointer = ctypes.c_void_p
 
@@ -99,7 +99,7 @@ class CompiledStep:
         self._force = _view(self._answer, "force")
         self._used = _view(self._answer, "used").view(bool)
         self._rates = _block(self._answer, "rates_wanted", 2, 6)
-        self._told = _block(self._answer, "error", 3, constant("TASKS"), 3)
+        self._told = _block(self._answer, "error", 3, TASKS, 3)
         self._gains: tuple[PoseGains, ContactGains, Thresholds] | None = None
         self._last: State | None = None
 

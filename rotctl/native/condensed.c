@@ -26,7 +26,7 @@ static int full(Self* s, const Pass* p, double weight, const Command* w, double*
                 double* gamma, double* residual) {
   const Constants* c = &s->c;
   int nu = s->nu, m3 = 3 * p->m, k = nu + m3, n3 = k + 1;
-  double *rows = s->reach, *row_weight = s->t2;  // (n, nu + 3m)
+  double *rows = s->reach, *row_weight = s->spare2;  // (n, nu + 3m)
   for (int i = 0; i < p->n; i++) {
     int at = p->row[i];
     memcpy(rows + i * k, s->solved + at * s->nv + ROOT, sizeof(double) * nu);
@@ -97,7 +97,7 @@ static int solve_pass(Self* s, const Pass* p, const Command* w, int warm, double
   *head = 0;
   if (solve_cone(s, 0, p->m, warm, none, force, gamma, residual) == FAILED) return FAILED;
   for (int i = 0; i < nu; i++) s->torque[i] = s->tau_b[i] + *gamma * s->difference[i];
-  double* y = s->t1;
+  double* y = s->spare;
   for (int i = 0; i < n; i++) {
     const double* row = s->reach + i * ld;
     y[i] = dot(row, force, m3) + row[m3] * *gamma + row[m3 + 1];

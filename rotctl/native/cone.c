@@ -23,7 +23,7 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
   double mu = c->friction;
   int n3 = head + 3 * m + 1, n = head + 4 * m + 1;
   const double E[3][4] = {{1, 1, 1, 1}, {mu, mu, -mu, -mu}, {mu, -mu, mu, -mu}};
-  double* half = s->t1;  // H times the edges (n3, n)
+  double* half = s->spare;  // H times the edges (n3, n)
   for (int i = 0; i < n3; i++) {
     const double* row = s->H + i * n3;
     double* out = half + i * n;
@@ -34,7 +34,7 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
                                 row[head + 3 * k + 2] * E[2][e];
     out[n - 1] = row[n3 - 1];
   }
-  double *Hs = s->Hs, *scale = s->t2;
+  double *Hs = s->Hs, *scale = s->spare2;
   memcpy(Hs, half, sizeof(double) * head * n);
   memcpy(s->fs, s->f, sizeof(double) * head);
   for (int k = 0; k < m; k++)
@@ -64,10 +64,10 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
   if (minimise(s, n, residual) == FAILED) return FAILED;
   // One proximal step: the addition to the diagonal now holds x near the solution.
   double before = *residual;
-  memcpy(s->t1, s->x, sizeof(double) * n);
+  memcpy(s->spare, s->x, sizeof(double) * n);
   for (int i = 0; i < n; i++) s->fs[i] -= c->diagonal * s->x[i];
   if (minimise(s, n, residual) == FAILED) {
-    memcpy(s->x, s->t1, sizeof(double) * n);
+    memcpy(s->x, s->spare, sizeof(double) * n);
     *residual = before;
   }
   for (int i = 0; i < n; i++) s->x[i] *= scale[i];

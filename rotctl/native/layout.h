@@ -108,7 +108,7 @@ typedef struct Self {
   int momenta, motion_rows, first_row[TASKS], row_count[TASKS];
   double *reach, *Q;                                   // (ROWS, FORCES + 2 + nu), (ROWS, ROWS)
   double *H, *f, *Hs, *fs, *x, *lower, *upper, *work;  // one quadratic program
-  double *t1, *t2;
+  double *spare, *spare2;  // for each function what it calls them
 } Self;
 
 #endif

@@ -30,7 +30,7 @@ int rotctl_mujoco_version(void) { return mjVERSION_HEADER; }
 void rotctl_free(Self* s) {
   double* all[] = {s->bias, s->diagonal, s->jacobian, s->solved, s->tau_a, s->tau_b,
                    s->difference, s->torque, s->A, s->BB, s->GG, s->reach, s->Q, s->H, s->f,
-                   s->Hs, s->fs, s->x, s->lower, s->upper, s->work, s->t1, s->t2};
+                   s->Hs, s->fs, s->x, s->lower, s->upper, s->work, s->spare, s->spare2};
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) free(all[i]);
   free(s);
 }
@@ -51,7 +51,7 @@ Self* rotctl_new(const mjModel* m, mjData* scratch, const Functions* mj, const C
       {&s->torque, nu}, {&s->A, ROWS * FORCES}, {&s->BB, ROWS * ROWS}, {&s->GG, FORCES * FORCES},
       {&s->reach, ROWS * (FORCES + 2 + nv)}, {&s->Q, ROWS * ROWS}, {&s->H, n * n}, {&s->f, n},
       {&s->Hs, n * n}, {&s->fs, n}, {&s->x, n}, {&s->lower, n}, {&s->upper, n},
-      {&s->work, n * (n + 7)}, {&s->t1, n * n}, {&s->t2, n * n}};
+      {&s->work, n * (n + 7)}, {&s->spare, n * n}, {&s->spare2, n * n}};
   for (size_t i = 0; i < sizeof need / sizeof *need; i++)
     if (!(*need[i].p = malloc(need[i].size * sizeof(double)))) {
       rotctl_free(s);
