@@ -16,9 +16,9 @@ from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
-from rotctl.results.stored_runs import stored_runs
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.manifest import Entry, read, write
+from rotctl.results.stored_runs import stored_runs
 from rotctl.results.table import Table, table
 from rotctl.run import make, run
 
