@@ -50,6 +50,10 @@ readme: setup ## put what `make run` prints into README.md, after a change that 
 torture: setup ## the long tests: sweeps of 200 runs whose processes are killed again and again
 	$(BIN)/python -m pytest -m slow
 
+.PHONY: fuzz
+fuzz: setup ## give 2,000 hostile inputs to the commands (FUZZ='--seed 1' others, FUZZ='--only 1:23' one)
+	$(BIN)/python tests/fuzz $(FUZZ)
+
 .PHONY: setup
 setup: $(STAMP) $(CODE) ## make .venv from requirements.lock (a second call does nothing)
 

@@ -84,7 +84,7 @@ def test_one_process_is_one_process():
 @pytest.mark.parametrize(
     ("jobs", "scheduler", "message"),
     [
-        (0, None, "--jobs=0: must be at least 1"),
+        (0, None, "--jobs=0: valid: 1 to 1024"),
         (
             2,
             "tcp://127.0.0.1:1",

@@ -64,19 +64,24 @@ class History:
         self._distributions = distributions(space)
 
     def add(self, trial: Trial) -> None:
-        """Remember a finished trial."""
+        """Remember a finished trial.
+
+        Raises:
+            InputError: the file cannot be written, or is damaged.
+        """
         from optuna.trial import create_trial
 
         facts = asdict(trial)
         del facts["values"], facts["score"]
-        self._study.add_trial(
-            create_trial(
-                params=trial.values,
-                distributions=self._distributions,
-                value=trial.score,
-                user_attrs=facts,
+        with _refused(self._path):
+            self._study.add_trial(
+                create_trial(
+                    params=trial.values,
+                    distributions=self._distributions,
+                    value=trial.score,
+                    user_attrs=facts,
+                )
             )
-        )
 
     def trials(self) -> list[Trial]:
         """All trials, by generation and index.
@@ -127,13 +132,15 @@ def open_history(folder: Path, space: Space, identity: dict[str, Any]) -> Histor
 @contextmanager
 def _refused(path: Path) -> Iterator[None]:
     """Whatever Optuna makes of a file that is no history becomes one line."""
+    from optuna.exceptions import OptunaError
     from sqlalchemy.exc import SQLAlchemyError
 
+    trouble = (OptunaError, SQLAlchemyError, OSError, RuntimeError, LookupError, ValueError)
     try:
         yield
     except InputError as error:
         raise InputError(f"cannot use {path}: it holds no trials: {error}") from None
-    except (SQLAlchemyError, OSError, RuntimeError, LookupError, TypeError, ValueError) as error:
+    except (*trouble, TypeError, AttributeError) as error:
         reason = (str(getattr(error, "orig", None) or error).splitlines() or ["damaged"])[0]
         raise InputError(f"cannot use {path}: {reason:.200}") from None
 

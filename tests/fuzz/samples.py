@@ -1,0 +1,116 @@
+"""The good input that hostile input is made of."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+from rotctl import listing
+from rotctl.config import load, to_dict
+from rotctl.log import RunLog, write_run
+from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
+from rotctl.plain import dotted, leaves
+
+OVERRIDES = ["seed=range(0,2)", "duration=0.1", "--quiet"]
+SPACE = """\
+name: small
+title: A small search
+base: [behaviour=forward_roll_1]
+parameters:
+  - {key: controller.pose.stiffness, low: 200.0, high: 2000.0, scale: log, unit: 1/s2}
+  - {key: "behaviour.poses.{a,b}.knee", low: -0.1, high: 2.8, unit: rad}
+runs: {seeds: 1, duration: 0.1, final: 1}
+objective: {over_runs: mean, survival: 0.6, progress: 0.4, pace: 0.65, drift: 0.03, heading: 0.001}
+stopping: {stall_time: 1.5, stall_progress: 0.1, off_axis: 70.0}
+sampler: {name: cmaes, population: 4, sigma: 0.15}
+trials: 4
+"""
+EXPERIMENT = """\
+title: A test
+source: "[Brown2013] Table 1"
+matrix: [["behaviour=forward_roll_1"]]
+seeds: range(0,2)
+deviations: [{text: Ours., where: {behaviour: forward_roll_1}}]
+limitations: [Short.]
+claims:
+  - {id: roll, metric: success_rate, comparison: at_least, expected: 0.9, tolerance: 0.0,
+     source: paper, where: {behaviour: forward_roll_1}}
+  - {id: roll.speed, metric: speed_mean, expected: 1.2, tolerance: 0.1, source: paper}
+"""
+CLAIMS = """\
+sweep,experiment,id,verdict,metric
+d,x,roll,reproduced,success_rate
+d,x,roll.speed,partly,speed_mean
+"""
+
+
+def make(folder, whole=True):
+    """Samples in a folder, which is made by simulating a little.
+
+    Args:
+        whole: with captures and a search, which take some seconds more.
+    """
+    from here import swept
+
+    sweep = swept(folder / "sweep", *OVERRIDES[:-1])
+    (sweep / "experiment-x.yaml").write_text(EXPERIMENT)
+    for log in sweep.glob("*/run.h5"):
+        _without_clock(log)
+    plain = list(leaves(to_dict(load([]))))
+    made = SimpleNamespace(
+        sweep=sweep,
+        log=min(sweep.glob("*/run.h5")),
+        manifest=(sweep / "sweep.jsonl").read_text(),
+        overrides=OVERRIDES,
+        experiment=EXPERIMENT,
+        space=SPACE,
+        claims=CLAIMS,
+        clip=(listing.conf_dir() / "motion" / "forward_roll.yaml").read_text(),
+        keys=(listing.conf_dir() / "motion" / "keys" / "forward_roll.yaml").read_text(),
+        config_keys=[dotted(way) for way, _ in plain],
+        config_values=[json.dumps(value) for _, value in plain],
+    )
+    if whole:
+        made.captures = _captures()
+        made.history = _history(folder)
+    return made
+
+
+def _without_clock(path):
+    """The same log wherever and whenever it is made, so that an input can be made again."""
+    log = RunLog.open(path)
+    arrays = {name: log[name] for name in log.names if name != MODEL_PATH}
+    attributes = {k: v for k, v in log.attributes.items() if k not in WRITER_ATTRIBUTES}
+    fixed = {"wall_time": 1.0, "git_commit": "0" * 40, "git_dirty": False}
+    fixed["machine"] = {"platform": "none", "cpu": "none", "cores": 1}
+    fixed["outcome"] = {**log.outcome, "real_time_factor": 1.0}
+    write_run(path, arrays, model_xml=log.model_xml, attributes={**attributes, **fixed})
+    path.with_name("summary.json").write_text(json.dumps(fixed["outcome"], indent=2))
+
+
+def _captures():
+    """Every kind of capture, of a second or two."""
+    from captures import bvh_text, in_order
+    from test_motion_files import AMC, ASF, STANDING
+
+    rolling = [[1 / 60, *STANDING[1:]] for _ in range(30)]
+    for i, row in enumerate(rolling):
+        row[1] = 0.02 * i
+    return {
+        "m.bvh": bvh_text(in_order("forward_roll", 1.2, frames=40)).encode(),
+        "m.asf": ASF.encode(),
+        "m.amc": AMC.encode(),
+        "m.json": json.dumps({"Loop": "wrap", "Frames": rolling}).encode(),
+    }
+
+
+def _history(folder):
+    """The history of a small search."""
+    from here import Here
+
+    from rotctl.tune.search import Watch, prepare, tune
+
+    (folder / "s.yaml").write_text(SPACE)
+    (folder / "search").mkdir()
+    search, budget = prepare(str(folder / "s.yaml"), [], 0, None, 4, None)
+    tune(search, folder / "search", budget, Here(), Watch(lambda line: None, lambda: None))
+    return Path(folder / "search" / "study.db")

@@ -1,0 +1,70 @@
+"""Text files: tune spaces, clips, key poses, captures, configs; and the history of a search."""
+
+import shutil
+
+import yaml
+
+from fuzz.case import Case, other
+from fuzz.nasty import changed, dumped, mangled
+from rotctl import listing
+
+
+def space(rng, samples, here):
+    _text_file(rng, here / "s.yaml", samples.space, here)
+    return Case(["tune", "s.yaml", "--out", "o", "--trials", "4"], simulates=True)
+
+
+def history(rng, samples, here):
+    (here / "s.yaml").write_text(samples.space)
+    (here / "o").mkdir()
+    (here / "o" / "study.db").write_bytes(mangled(rng, samples.history.read_bytes()))
+    if rng.random() < 0.2:
+        other(rng, here / "o" / rng.choice(("study.db", "study.db-journal", "history.txt")), here)
+    return Case(["tune", "s.yaml", "--out", "o", "--trials", "4"], simulates=True)
+
+
+def clip(rng, samples, here):
+    _text_file(rng, here / "c.yaml", samples.clip, here)
+    if rng.random() < 0.05:
+        return Case(["preview-motion", "c.yaml", "--out", "x.png", "--frames", "2"])
+    run = ["behaviour=forward_roll_2", "behaviour.reference.clip=./c.yaml", "duration=0.05"]
+    return Case(["run", *run, "--out", "o"])
+
+
+def keys(rng, samples, here):
+    _text_file(rng, here / "k.yaml", samples.keys, here)
+    return Case(["author-motion", "k.yaml", "--out", "c.yaml"])
+
+
+def capture(rng, samples, here):
+    name = rng.choice(list(samples.captures))
+    for file, content in samples.captures.items():
+        (here / file).write_bytes(content)
+    (here / name).write_bytes(mangled(rng, samples.captures[name]))
+    if rng.random() < 0.05:
+        other(rng, here / name, here)
+    file = {"m.asf": "m.amc"}.get(name, name)
+    return Case(["import-motion", file, "--out", "c.yaml"])
+
+
+def conf(rng, samples, here):
+    shutil.copytree(listing.conf_dir(), here / "conf")
+    paths = sorted((here / "conf").rglob("*.yaml"))
+    path = rng.choice([p for p in paths if p.parent.name not in ("motion", "tune", "keys")])
+    _text_file(rng, path, path.read_text(), here)
+    command = ["list"]
+    if path.parent.name != "conf" and rng.random() < 0.7:
+        plus = "+" if path.parent.name in ("reference",) else ""
+        choice = f"{plus}{path.parent.name}={path.stem}"
+        command = rng.choice((["show", choice], ["run", choice, "duration=0.05", "--out", "o"]))
+    return Case(command, conf=here / "conf", simulates=True)
+
+
+def _text_file(rng, path, content, here):
+    path.unlink(missing_ok=True)
+    if rng.random() < 0.05:
+        other(rng, path, here)
+    elif rng.random() < 0.6:
+        path.write_bytes(dumped(rng, changed(rng, yaml.safe_load(content))))
+    else:
+        path.write_bytes(mangled(rng, content.encode()))

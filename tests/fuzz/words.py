@@ -1,0 +1,76 @@
+"""Words on the command line: overrides and options."""
+
+import json
+import shutil
+
+from fuzz.case import Case
+from fuzz.nasty import NUMBERS, text, value
+from rotctl import listing
+
+
+def overrides(rng, samples, here):
+    given = [_override(rng, samples) for _ in range(rng.choice((1, 1, 2, 4)))]
+    command = rng.choices(["show", "run", "sweep"], [6, 3, 2])[0]
+    if command == "show":
+        return Case(["show", *given])
+    short = ["duration=0.05"] if rng.random() < 0.9 else []
+    return Case([command, *given, *short, "--out", "o"], simulates=True)
+
+
+SWEEPS = ("range(0,3)", "range(0,1e9)", "1,2", "glob(*)", "choice(a,b)", "{a: 1}", "[1,2,3]")
+
+
+def _override(rng, samples):
+    key = rng.choice((*samples.config_keys, *samples.config_keys, *listing.groups(), text(rng)))
+    if rng.random() < 0.2:
+        at = rng.randrange(len(key) + 1)
+        key = key[:at] + rng.choice((".", "@", "/", "[0]", text(rng)[:300], "x")) + key[at:]
+    new = rng.choice(
+        (text(rng), json.dumps(value(rng)), rng.choice(samples.config_values), rng.choice(SWEEPS))
+    )
+    sign = rng.choices(["", "+", "++", "~"], [8, 2, 1, 1])[0]
+    return f"{sign}{key}={new}"[: rng.choice((40, 300, 20_000))].replace("\0", "?")
+
+
+def options(rng, samples, here):
+    shutil.copy(samples.log, here / "run.h5")
+    shutil.copytree(samples.sweep, here / "d")
+    (here / "s.yaml").write_text(samples.space)
+    (here / "m.bvh").write_bytes(samples.captures["m.bvh"])
+    command = list(rng.choice(OPTIONS))
+    for _ in range(rng.choice((1, 1, 2))):
+        at = rng.randrange(1, len(command) + 1)
+        new = rng.choice((text(rng), rng.choice(NUMBERS), rng.choice(WORDS)))
+        if at < len(command) and not command[at].startswith("--") and rng.random() < 0.9:
+            command[at] = new
+        else:
+            command.insert(at, new)
+    for i, word in enumerate(command):  # what would leave the folder at our own wish
+        if word.startswith(("/", "..", "~")) and command[i - 1].startswith("--"):
+            command[i] = "x"
+    return Case([word.replace("\0", "?") for word in command], simulates=True)
+
+
+WORDS = (
+    *("run.h5", "d", ".", "..", "/", "no/x.png", "/dev/null", "--x", "--", "-", "d/x.png"),
+    *("a?b=c", "0:1", "1:0"),
+)
+OPTIONS = (
+    ["run", "duration=0.05", "--out", "o", "--json"],
+    ["render", "run.h5", "--filmstrip", "x.png", "--frames", "2", "--from", "0", "--to", "0.1"],
+    ["replay", "run.h5", "--html", "x.html", "--compare", "run.h5"],
+    ["plot", "run.h5", "--out", "x.svg", "--from", "0", "--to", "0.1"],
+    ["inspect", "run.h5"],
+    ["verify", "run.h5", "--json"],
+    ["list"],
+    ["show", "seed=1"],
+    ["sweep", "seed=0", "duration=0.05", "--out", "o", "--jobs", "1", "--retries", "1"],
+    ["sweep", "seed=0", "duration=0.05", "--out", "o", "--scheduler", "tcp://127.0.0.1:1"],
+    ["summarise", "d", "--by", "seed"],
+    ["report", "d", "--out", "o", "--against", "d"],
+    ["tune", "s.yaml", "--out", "o", "--trials", "4", "--seed", "0", "--sampler", "tpe"],
+    ["tune", "s.yaml", "--out", "o", "--minutes", "0.01"],
+    ["import-motion", "m.bvh", "--out", "c.yaml", "--cycle", "0:1", "--rate", "60"],
+    ["author-motion", "s.yaml", "--out", "c.yaml", "--character", "adult"],
+    ["preview-motion", "forward_roll", "--out", "x.png", "--frames", "2", "--character", "adult"],
+)
