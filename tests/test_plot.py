@@ -14,6 +14,8 @@ from rotctl.log import RunLog
 from rotctl.report import plot as module
 from rotctl.report import stored_model
 from rotctl.report.plot import plot
+from rotctl.report.replay import page
+from rotctl.report.rows import drawable, moderate
 from rotctl.report.signals import (
     angular_rates,
     joint_group,
@@ -70,7 +72,7 @@ def test_units_are_turns_and_the_start_is_zero(log):
     np.testing.assert_array_equal(found.height, height)
 
 
-@pytest.mark.parametrize("value", [None, "1.3", True, 10**400, [1.3]])
+@pytest.mark.parametrize("value", [None, "1.3", True, 10**30])
 def test_a_command_that_is_no_number_is_none(log, tmp_path, value):
     outcome = {"angular_velocity_commanded": value}
     assert np.isnan(signals(changed(log, tmp_path, outcome=outcome), ALL).commanded_spin)
@@ -147,6 +149,31 @@ def test_a_run_that_broke_down_is_plotted_until_there(log, tmp_path):
     plot(broken, tmp_path / "plot.svg")
     states[1:] = np.nan
     plot(changed(log, tmp_path, {"trajectory/qpos": states}), tmp_path / "plot.svg")
+
+
+@pytest.mark.parametrize("value", [1e308, 1e6, np.nan, -1e308])
+def test_times_that_no_run_has_are_not_shown(log, tmp_path, value):
+    time = log["trajectory/time"]
+    time[40:] = value
+    broken = changed(log, tmp_path, {"trajectory/time": time})
+    assert len(drawable(broken, broken["trajectory/qpos"])) == 40
+    plot(broken, tmp_path / "plot.svg")
+    plot(changed(log, tmp_path, {"trajectory/time": np.zeros(60)}), tmp_path / "plot.svg")
+    time[:] = value
+    with pytest.raises(LogError, match=r"has no step that could be drawn$"):
+        plot(changed(log, tmp_path, {"trajectory/time": time}), tmp_path / "plot.svg")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["com", "com_velocity", "angular_momentum", "angular_excursion"])
+def test_numbers_that_are_too_large_are_gaps(log, tmp_path, name):
+    array = log[f"trajectory/{name}"]
+    array[::2] = 1e308
+    broken = moderate(changed(log, tmp_path, {f"trajectory/{name}": array}))
+    assert np.isnan(broken[f"trajectory/{name}"][::2]).all()
+    assert np.array_equal(broken[f"trajectory/{name}"][1::2], array[1::2])
+    plot(broken, tmp_path / "plot.svg")
+    page(broken)
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """Space files: what they may say, and the one line for what they may not."""
 
 import copy
+import os
 
 import pytest
 import yaml
@@ -120,6 +121,38 @@ def test_one_line_for_what_is_missing_or_no_space(complaint, tmp_path):
     (tmp_path / "torn.yaml").write_text("a: [")
     with pytest.raises(InputError, match="torn.yaml:2: is no YAML: while parsing"):
         load_space(str(tmp_path / "torn.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name: 2026-13-45", ': name="2026-13-45": must be letters, digits and _, a letter first'),
+        ("trials: " + "9" * 5000, ":1: a number has more than 40 digits"),
+        ("a: " + "[" * 3000, ":1: nested more than 12 deep"),
+        ("a: " + "[" * 1200 + "]" * 1200, ":1: nested more than 12 deep"),
+        ("#" * 2_000_001, ": larger than 2 MB"),
+        (
+            "canary: [unclosed",
+            ":2: is no YAML: while parsing a flow sequence, did not find expected ",
+        ),
+        ("", ": must be keys with values: name, title, "),
+    ],
+)
+def test_a_strangers_space_is_one_line(tmp_path, text, said):
+    path = tmp_path / "x.yaml"
+    path.write_text(text)
+    with pytest.raises(InputError) as caught:
+        load_space(str(path))
+    assert str(caught.value).startswith(f"{path}{said}")
+    assert "\n" not in str(caught.value)
+    assert "canary" not in str(caught.value)
+
+
+def test_a_pipe_in_the_place_of_a_space_does_not_hang(tmp_path):
+    os.mkfifo(tmp_path / "x.yaml")
+    with pytest.raises(InputError) as caught:
+        load_space(str(tmp_path / "x.yaml"))
+    assert str(caught.value) == f"{tmp_path / 'x.yaml'}: is no plain file"
 
 
 def test_braces_stand_for_several_keys(tmp_path):

@@ -11,6 +11,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))  # the tests' own modules
 
 from here import Here
+from tqdm import tqdm
 
 from fuzz import child, kinds, samples
 
@@ -105,7 +106,9 @@ def main():
 
 def _many(arguments, made, base):
     begin, faults, most_cpu, most_memory, codes = time.monotonic(), [], 0.0, 0, {}
-    for number in range(arguments.first, arguments.first + arguments.count):
+    tqdm.monitor_interval = 0  # no thread beside those who fork
+    numbers = range(arguments.first, arguments.first + arguments.count)
+    for number in tqdm(numbers, unit="input", disable=None):
         folder = base / "case"
         found, case = given(made, arguments.seed, number, folder)
         os.rename(folder, base / "done")
