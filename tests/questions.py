@@ -86,10 +86,13 @@ def look_at(scenario, steps, look, every=1):
 
 
 class Asking:
-    """A behaviour that asks for more tasks, beside those of another one."""
+    """A behaviour that asks for more tasks, beside those of another one.
 
-    def __init__(self, behaviour, more):
-        self._behaviour, self._more = behaviour, more
+    `aim`, where there is one, changes them at every instant: it is given them and the state.
+    """
+
+    def __init__(self, behaviour, more, aim=lambda more, state: None):
+        self._behaviour, self._more, self._aim = behaviour, more, aim
         self.tasks = (*behaviour.tasks, *(f"more_{i}" for i in range(len(more))))
 
     def __getattr__(self, name):
@@ -97,6 +100,7 @@ class Asking:
 
     def command(self, memory, state):
         command = self._behaviour.command(memory, state)
+        self._aim(self._more, state)
         asked = with_tasks(command, *self._more)
         if command.slots is None:
             return asked
