@@ -1,6 +1,8 @@
 """Real simulations that are no rolls, though they turn: the verdict is not fooled."""
 
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -11,6 +13,8 @@ from rotctl.metrics.rolling import failure_reason, measure
 from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.summary import summarise
+
+DOCS = Path(__file__).parents[1] / "docs"
 
 
 def judged(*overrides):
@@ -133,3 +137,26 @@ def test_without_a_ground_nothing_is_a_roll(roll):
     nowhere = np.full_like(arrays["trajectory/ground_height"], np.nan)
     assert verdict(config, arrays | {"trajectory/ground_height": nowhere}).startswith("fell: ")
     assert verdict(replace(config, duration=9.0), arrays) == "ended after 8.00 of 9 s"
+
+
+# ---------------------------------------------------------------- the page
+
+
+@pytest.mark.parametrize(("criteria", "column"), [("rolling", 2), ("terrain", 3)])
+def test_docs_verdict_has_the_limits(criteria, column):
+    """Each cell begins with the limit; `the same` is that of level ground."""
+    limits, told = load([f"criteria={criteria}"]).criteria, {}
+    page = (DOCS / "verdict.md").read_text(encoding="utf-8")
+    for line in re.findall(r"^\| .*`.* \|$", page, flags=re.MULTILINE):
+        cells = line.split("|")
+        cell = cells[2] if cells[column].strip() == "the same" else cells[column]
+        numbers = [float(n) for n in re.findall(r"\d+(?:\.\d+)?", cell.split(";")[0])]
+        for name in re.findall(r"`(\w+)`", cells[1]):
+            told.setdefault(name, []).extend(numbers[: 2 if name == "travel" else 1])
+            numbers = numbers[1:] or numbers
+    wanted = {
+        name: list(value) if isinstance(value, tuple) else [value]
+        for name, value in vars(limits).items()
+        if isinstance(value, float | tuple) and name != "settle"
+    }
+    assert told == wanted
