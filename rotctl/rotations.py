@@ -89,7 +89,10 @@ def rotation_between(start: Array, end: Array) -> Array:
 
 def dot(a: Array, b: Array) -> float:
     """Dot product of two short vectors, such as (3,), added from left to right."""
-    return float(sum(x * y for x, y in zip(a.tolist(), b.tolist(), strict=True)))
+    total = 0.0  # not sum(), which some versions of Python add with compensation
+    for x, y in zip(a.tolist(), b.tolist(), strict=True):
+        total += x * y
+    return total
 
 
 def cross(a: Array, b: Array) -> Array:

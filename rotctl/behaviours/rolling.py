@@ -14,7 +14,7 @@ the root's orientation and angular velocity with what is wanted of the whole bod
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -97,11 +97,13 @@ class RollingMemory:
         excursion: AE and phase.
         origin: (3,) where the line of travel began [m].
         angle: (3,) phi_0 [rad].
+        axis: (3,) the trunk's that should stay on the rolling axis, unit, world.
     """
 
     excursion: Excursion
     origin: Array
     angle: Array
+    axis: Array
 
 
 class Rolling:
@@ -137,6 +139,8 @@ class Rolling:
         gains = gains_of(control, self.tasks)
         self._tasks = np.concatenate([task(kind(name).number, gains[name], axes) for name in gains])
         self._tasks["velocity"] = self._velocity, self._angular_velocity
+        self._targets = self._tasks["target"][:, :3]  # views: cheaper than fields, step by step
+        self._velocities = self._tasks["velocity"]
         self._control, self._held_out = control, model.excluded
 
     def start(self, pitch: float) -> Placement:
@@ -148,14 +152,15 @@ class Rolling:
         """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
         line = state.momentum.com - dot(self._left, state.momentum.com) * self._left
         now = excursion.start(pitch, self._left)
-        return RollingMemory(now, line, now.angle)
+        return RollingMemory(now, line, now.angle, self._axis(state))
 
     def advance(self, before: RollingMemory, state: State) -> RollingMemory:
         """Memory now, from that of the previous control step."""
+        axis = self._axis(state)
         now = excursion.integrate(
             before.excursion,
             state.momentum.angular_velocity,
-            self._axis(state),
+            axis,
             self._left,
             self._period,
             self._measured.correction_time,
@@ -164,19 +169,18 @@ class Rolling:
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
         if self._measured.measure == "root":
             now = excursion.on_root(now, state.position[3:7], self._frame.orientation)
-        return replace(before, excursion=now)
+        return RollingMemory(now, before.origin, before.angle, axis)
 
     def command(self, memory: RollingMemory, state: State) -> Command:
         """What rolling wants at this instant."""
         now, measure = memory.excursion, self._measured.measure
         pose_a, pose_b = self._poses.at(now.phase)
-        linear, spin = self._tasks
-        linear["target"][:3] = memory.origin + state.time * self._velocity
+        self._targets[0] = memory.origin + state.time * self._velocity
         target = memory.angle + state.time * self._angular_velocity  # phi_hat
-        spin["target"][:3] = excursion.error(now, target, self._left, measure)
+        self._targets[1] = excursion.error(now, target, self._left, measure)
         if measure == "root":  # AV that is off by as much as the root's velocity is
             aside = state.momentum.angular_velocity - state.root_angular_velocity
-            spin["velocity"] = self._angular_velocity + aside
+            self._velocities[1] = self._angular_velocity + aside
         return Command(
             tasks=self._tasks,
             pose_a=pose_a,
@@ -195,7 +199,7 @@ class Rolling:
         Forward, phase pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
         """
         now = memory.excursion
-        return Signals(angle=now.angle, phase=now.phase, axis=self._axis(state), axes=self.axes)
+        return Signals(angle=now.angle, phase=now.phase, axis=memory.axis, axes=self.axes)
 
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""

@@ -1,6 +1,6 @@
 """The support polygon of the parts that stand, and the capture point over it."""
 
-from math import sqrt
+from math import fsum, sqrt
 
 import mujoco
 import numpy as np
@@ -56,7 +56,7 @@ def shrunk(corners: list[Point], margin: float) -> list[Point]:
 def middle(corners: list[Point]) -> Point:
     """Mean of the corners."""
     n = len(corners)
-    return sum(p[0] for p in corners) / n, sum(p[1] for p in corners) / n
+    return fsum(p[0] for p in corners) / n, fsum(p[1] for p in corners) / n
 
 
 def nearest(point: Point, corners: list[Point]) -> Point:

@@ -4,6 +4,7 @@ Serves the condensed form with boxqp, which is the default.
 """
 
 import ctypes
+from itertools import accumulate
 from math import prod
 from typing import Any
 
@@ -16,7 +17,7 @@ from rotctl.control.decision import Decision
 from rotctl.control.kinds import KINDS
 from rotctl.control.settings import ContactGains, ControllerSettings, PoseGains
 from rotctl.control.supervisor import Thresholds
-from rotctl.control.task import TASK, Command
+from rotctl.control.task import TASK, Command, Tasks
 from rotctl.errors import RotctlError
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
@@ -45,6 +46,11 @@ _MOMENTUM = {
     "root_offset": (3,),
 }
 _MOMENTUM_SIZE = sum(map(prod, _MOMENTUM.values()))
+_ENDS = list(accumulate(map(prod, _MOMENTUM.values())))
+_CUTS = [
+    (slice(begin, end), shape if len(shape) > 1 else None)
+    for begin, end, shape in zip([0, *_ENDS], _ENDS, _MOMENTUM.values(), strict=False)
+]
 _READ = ("trunk_axes", "position", "frame", "friction", "gap", "body", "row")
 
 
@@ -72,9 +78,15 @@ class CompiledStep:
         self._reading, self._command, self._answer = (
             structure(name)() for name in ("Reading", "Command", "Answer")
         )
-        self._torque, self._bias = np.zeros(model.mj.nu), np.zeros(model.mj.nv)
+        nu, nv = model.mj.nu, model.mj.nv
+        self._torque, self._bias = np.zeros(nu), np.zeros(nv)
         self._answer.torque = self._torque.ctypes.data
         self._reading.bias = self._bias.ctypes.data
+        # Small arrays of a command are copied here: cheaper than asking for their addresses.
+        self._poses, self._held_out = np.zeros((2, nu)), np.zeros(model.mj.nbody, dtype=bool)
+        self._tasks: Tasks | None = None
+        self._command.pose_a, self._command.pose_b = (p.ctypes.data for p in self._poses)
+        self._command.held_out = self._held_out.ctypes.data
         # By their numbers: where C has the function of that name, and whether over qddot.
         addresses = [_address(found, f"rotctl_kind_{name}") for name in KINDS]
         self._kinds = (_pointer * len(KINDS))(*addresses)
@@ -137,10 +149,12 @@ class CompiledStep:
     def decide(self, state: State, command: Command, blend: float) -> Decision | None:
         """Torques; None where the reference has to take over.
 
-        That is where a solve fails, for a kind of task that C has not, and for any state but
-        the one that `read` read last, as part of it is kept on the C side.
+        That is where a solve fails, for a kind of task that C has not, for more tasks than it
+        has room for, and for any state but the one that `read` read last, as part of it is kept
+        on the C side.
         """
-        if state is not self._last:
+        k = len(command.tasks)
+        if state is not self._last or k > TASKS:
             return None
         given, answer = self._command, self._answer
         gains = (command.pose, command.contact, command.thresholds)
@@ -150,11 +164,11 @@ class CompiledStep:
         self._forward[:] = command.forward
         given.blend = blend
         given.supervisor = SUPERVISORS[command.supervisor]
-        given.tasks = k = len(command.tasks)
-        given.task = command.tasks.ctypes.data
-        given.pose_a = command.pose_a.ctypes.data
-        given.pose_b = command.pose_b.ctypes.data
-        given.held_out = command.held_out.ctypes.data
+        if command.tasks is not self._tasks:  # a behaviour mostly fills the same ones again
+            self._tasks = tasks = np.ascontiguousarray(command.tasks, TASK)
+            given.task, given.tasks = tasks.ctypes.data, k
+        self._poses[0], self._poses[1] = command.pose_a, command.pose_b
+        self._held_out[:] = command.held_out
         m = self._library.rotctl_decide(self._self, state.data._address, *self._pointers)
         if m == FAILED:
             return None
@@ -222,12 +236,7 @@ def _block(shared: ctypes.Structure, first: str, *shape: int) -> NDArray[np.floa
 
 def _momentum(block: NDArray[np.float64]) -> Momentum:
     """Cut from one block, which is cheaper than a copy each."""
-    parts, at = {}, 0
-    for name, shape in _MOMENTUM.items():
-        size = prod(shape)
-        parts[name] = block[at : at + size].reshape(shape)
-        at += size
-    return Momentum(**parts)
+    return Momentum(*[block[cut].reshape(shape) if shape else block[cut] for cut, shape in _CUTS])
 
 
 def _constants(model: Model, settings: ControllerSettings) -> ctypes.Structure:

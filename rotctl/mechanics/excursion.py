@@ -108,7 +108,8 @@ def keep_phase(excursion: Excursion, turned: float, period: float, phase_time: f
         phase_time: time constant [s].
     """
     drift = (turned - excursion.phase + pi) % tau - pi
-    return replace(excursion, phase=excursion.phase + drift * min(1.0, period / phase_time))
+    phase = excursion.phase + drift * min(1.0, period / phase_time)
+    return Excursion(excursion.angle, excursion.orientation, phase)
 
 
 def on_root(excursion: Excursion, root: Array, at_phase_0: Array) -> Excursion:
