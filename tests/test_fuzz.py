@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 from fuzz import child, kinds
-from fuzz.__main__ import given, import_all
+from fuzz.giving import given, import_all
 from fuzz.samples import make
 
 INPUTS = 24
