@@ -4,7 +4,7 @@ An aim fills a task's target, velocity and acceleration at one instant; which ki
 serves stands in its docstring.
 """
 
-from math import atan2
+from math import sqrt
 from typing import Annotated, Literal
 
 import numpy as np
@@ -14,6 +14,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
+from rotctl.errors import InputError
+from rotctl.linear import solve
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model, body_ids
 from rotctl.rotations import dot
@@ -46,7 +48,7 @@ class Hold:
 
 @validated(frozen=True, config=STRICT)
 class Upright:
-    """A body stands as in the zero pose, heading along forward: attitude."""
+    """A body's up is the world's, whatever its turn about it: attitude."""
 
     law: Literal["upright"]
 
@@ -55,9 +57,32 @@ class Upright:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
-        forward = scene.axes[0]
-        half = 0.5 * atan2(forward[1], forward[0])
-        task["target"] = [np.cos(half), 0.0, 0.0, np.sin(half)]
+        w, _, _, z = scene.state.data.xquat[int(task["body"])].tolist()
+        length = sqrt(w * w + z * z) or 1.0
+        task["target"] = [w / length, 0.0, 0.0, z / length]
+
+
+@validated(frozen=True, config=STRICT)
+class Ground:
+    """A point that has left the ground is brought back to it: point.
+
+    Attributes:
+        height: of the point above the ground when its body stands [m].
+    """
+
+    law: Literal["ground"]
+    height: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target; a body that stands has no weight here, its contacts hold it."""
+        body = int(task["body"])
+        x, y, _ = scene.state.data.xpos[body].tolist()
+        task["target"][:3] = [x, y, scene.model.ground.height(x, y) + self.height]
+        if body in scene.state.contacts.body.tolist():
+            task["weight"] = 0.0
 
 
 @validated(frozen=True, config=STRICT)
@@ -88,14 +113,19 @@ class Turn:
 class Capture:
     """Keep the capture point over the bodies that stand, and a height: linear.
 
-    The centre of pressure that would bring the capture point back to the middle of the support is
-    brought into the support, and the centre of mass accelerates away from it.
+    The centre of pressure goes beyond the capture point, as seen from the middle of the support,
+    as far as the support goes, and the centre of mass accelerates away from it. Where the capture
+    point leaves the support, the trunk and the arms are thrown after it (`Lunge`), which for a
+    while acts like pressure from beyond the feet.
 
     Attributes:
         bodies: that stand.
-        gain: of the centre of pressure beyond the capture point, towards where that is [-].
+        gain: of the centre of pressure beyond the capture point [-].
         margin: inside the support that the pressure keeps [m].
-        height: of the centre of mass over the ground [m].
+        height: of the centre of mass over the support's middle, along the leg [m].
+        lunge: pressure from beyond the feet, as a multiple of how far the capture point is out [-].
+        lunge_margin: inside the support, from which it counts as out [m].
+        lunge_most: furthest pressure from beyond the feet [m].
     """
 
     law: Literal["capture"]
@@ -103,6 +133,9 @@ class Capture:
     gain: NonNegative
     margin: NonNegative
     height: Positive
+    lunge: NonNegative
+    lunge_margin: NonNegative
+    lunge_most: NonNegative
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -111,20 +144,66 @@ class Capture:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
         model, state = scene.model, scene.state
-        standing = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
-        corners = support.hull(support.ends(model, state, standing))
+        corners, (mx, my) = self._support(scene)
         rate = support.pendulum_rate(model, state)
         x, y = support.capture_point(state, rate)
-        cx, cy = support.middle(corners)
-        beyond = (x + self.gain * (x - cx), y + self.gain * (y - cy))
-        pressed = support.nearest(beyond, support.shrunk(corners, self.margin))
-        task["acceleration"] = support.centre_of_pressure(state, rate, pressed)
-        c = state.momentum.com
-        level = model.ground.height(float(c[0]), float(c[1]))
-        task["target"][:3] = [c[0], c[1], level + self.height]
+        reach = 1.0 + self.gain
+        wish = (mx + reach * (x - mx), my + reach * (y - my))
+        px, py = support.within(corners, (mx, my), wish, self.margin)
+        ex, ey = self.beyond(scene)
+        cx, cy, _ = state.momentum.com.tolist()
+        task["acceleration"] = [rate * rate * (cx - px - ex), rate * rate * (cy - py - ey), 0.0]
+        aside = (cx - mx) ** 2 + (cy - my) ** 2
+        up = sqrt(max(self.height**2 - aside, 0.0))
+        task["target"][:3] = [cx, cy, model.ground.height(cx, cy) + up]
+
+    def beyond(self, scene: Scene) -> tuple[float, float]:
+        """How far beyond the feet pressure is wanted [m]."""
+        corners, middle = self._support(scene)
+        rate = support.pendulum_rate(scene.model, scene.state)
+        x, y = support.capture_point(scene.state, rate)
+        ix, iy = support.within(corners, middle, (x, y), self.lunge_margin)
+        ex, ey = self.lunge * (x - ix), self.lunge * (y - iy)
+        far = sqrt(ex * ex + ey * ey)
+        share = min(1.0, self.lunge_most / far) if far > 0.0 else 0.0
+        return share * ex, share * ey
+
+    def _support(self, scene: Scene) -> tuple[list[support.Point], support.Point]:
+        standing = body_ids(scene.model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+        ends = support.ends(scene.model, scene.state, standing)
+        return support.hull(ends), support.middle(ends)
 
 
-Aim = Annotated[Hold | Upright | Turn | Capture, Field(discriminator="law")]
+@validated(frozen=True, config=STRICT)
+class Lunge:
+    """The whole body's spin that pressure from beyond the feet stands for: spin.
+
+    Attributes:
+        task: whose aim is `capture`.
+        fade: pressure so far beyond the feet switches the damping of the spin off [m].
+    """
+
+    law: Literal["lunge"]
+    task: str
+    fade: Positive
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set velocity and acceleration."""
+        capture = scene.aims.get(self.task)
+        if not isinstance(capture, Capture):
+            raise InputError(f"behaviour: the aim lunge is for a task {self.task!r} that captures")
+        momentum, gravity = scene.state.momentum, -float(scene.model.gravity[2])
+        ex, ey = capture.beyond(scene)
+        share = min(1.0, sqrt(ex * ex + ey * ey) / self.fade)
+        weight = scene.model.mass * gravity
+        task["velocity"] = share * momentum.angular_velocity
+        task["acceleration"] = solve(momentum.inertia, np.array([-weight * ey, weight * ex, 0.0]))
+
+
+Aim = Annotated[Hold | Upright | Ground | Turn | Capture | Lunge, Field(discriminator="law")]
 
 
 def _missing(scene: Scene, angle: np.ndarray) -> np.ndarray:

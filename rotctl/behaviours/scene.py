@@ -1,5 +1,6 @@
 """What aims and conditions of a stage look at."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rotctl.mechanics.excursion import Excursion, ExcursionName
@@ -36,6 +37,7 @@ class Scene:
         excursion: AE and phase now, measured by `measure`.
         begin: of the stage.
         first: AE and phase at the start of the run.
+        aims: of the stage's tasks, by the name of the task.
         target: in-plane excursion that the behaviour is to reach since its start [rad].
         turned: in-plane excursion since its start [rad].
         airborne: how long nothing has touched the ground [s].
@@ -49,6 +51,7 @@ class Scene:
     measure: ExcursionName
     begin: Begin
     first: Excursion
+    aims: Mapping[str, object]
     target: float
     turned: float
     airborne: float

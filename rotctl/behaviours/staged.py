@@ -147,13 +147,18 @@ class StagedMemory:
 
 @dataclass(frozen=True)
 class _Part:
-    """A stage, ready: its tasks, what fills them, and their places among the behaviour's."""
+    """A stage, ready: its tasks, what fills them, and their places among the behaviour's.
+
+    An aim may take a task's weight for a step; `weight` (k, 3) is what they begin with.
+    """
 
     tasks: Tasks
     fillers: list[tuple[int, str, Aim]]
     slots: list[int]
     held_out: NDArray[np.bool_]
     pose: PoseGains
+    aims: dict[str, Aim]
+    weight: Array
 
 
 class Staged:
@@ -210,7 +215,9 @@ class Staged:
         held_out = model.excluded.copy()
         held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
         tasks = np.concatenate([np.zeros(0, TASK), *rows])
-        return _Part(tasks, fillers, slots, held_out, pose_gains_of(self._control, stage.pose))
+        aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
+        pose = pose_gains_of(self._control, stage.pose)
+        return _Part(tasks, fillers, slots, held_out, pose, aims, tasks["weight"].copy())
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] about left."""
@@ -251,6 +258,7 @@ class Staged:
         """What the present stage wants at this instant."""
         part, stage = self._parts[memory.stage], self._settings.stages[memory.stage]
         scene = self._scene(memory, state)
+        part.tasks["weight"] = part.weight
         for i, kind_name, aim in part.fillers:
             aim.fill(part.tasks[i], kind_name, scene)
         ahead = min(max(scene.target - scene.turned, -stage.lead), stage.lead)
@@ -282,6 +290,7 @@ class Staged:
             measure=self._measured.measure,
             begin=memory.begin,
             first=memory.first,
+            aims=self._parts[memory.stage].aims,
             target=self._target,
             turned=memory.excursion.phase - memory.first.phase,
             airborne=memory.airborne,
