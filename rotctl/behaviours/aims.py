@@ -123,6 +123,7 @@ class Capture:
         gain: of the centre of pressure beyond the capture point [-].
         margin: inside the support that the pressure keeps [m].
         height: of the centre of mass over the support's middle, along the leg [m].
+        sink: below that, which keeps the knees from their stops [m].
         lunge: pressure from beyond the feet, as a multiple of how far the capture point is out [-].
         lunge_margin: inside the support, from which it counts as out [m].
         lunge_most: furthest pressure from beyond the feet [m].
@@ -133,6 +134,7 @@ class Capture:
     gain: NonNegative
     margin: NonNegative
     height: Positive
+    sink: NonNegative
     lunge: NonNegative
     lunge_margin: NonNegative
     lunge_most: NonNegative
@@ -155,7 +157,7 @@ class Capture:
         task["acceleration"] = [rate * rate * (cx - px - ex), rate * rate * (cy - py - ey), 0.0]
         aside = (cx - mx) ** 2 + (cy - my) ** 2
         up = sqrt(max(self.height**2 - aside, 0.0))
-        task["target"][:3] = [cx, cy, model.ground.height(cx, cy) + up]
+        task["target"][:3] = [cx, cy, model.ground.height(cx, cy) + up - self.sink]
 
     def beyond(self, scene: Scene) -> tuple[float, float]:
         """How far beyond the feet pressure is wanted [m]."""
