@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.errors import InputError
-from rotctl.motion import make_pose_pair
+from rotctl.motion import Poses, make_pose_pair
 
 
 def value(model, poses, name):
@@ -14,7 +14,7 @@ def value(model, poses, name):
 
 
 def test_constant_and_varying_angles(world):
-    pair = make_pose_pair(world.model, {"knee_l": 1.0}, {"hip_y_r": (1.0, 0.3, -0.4)})
+    pair = make_pose_pair(world.model, Poses({"knee_l": 1.0}, {"hip_y_r": (1.0, 0.3, -0.4)}))
     for phase in (-9.0, 0.0, 1.3, 2.0, 50.0):
         a, b = pair.at(phase)
         assert value(world.model, a, "knee_l") == 1.0
@@ -24,25 +24,25 @@ def test_constant_and_varying_angles(world):
 
 
 def test_a_name_without_side_means_both(world):
-    a, b = make_pose_pair(world.model, {"elbow": 0.7, "waist_y": 0.2}, {}).at(0.0)
+    a, b = make_pose_pair(world.model, Poses({"elbow": 0.7, "waist_y": 0.2}, {}).at(0.0))
     named = {"elbow_l": 0.7, "elbow_r": 0.7, "waist_y": 0.2}
     assert a.tolist() == [named.get(name, 0.0) for name in world.model.joint_names]
     assert not b.any()
 
 
 def test_a_later_name_wins(world):
-    a, _ = make_pose_pair(world.model, {"elbow": 0.7, "elbow_r": 1.1}, {}).at(0.0)
+    a, _ = make_pose_pair(world.model, Poses({"elbow": 0.7, "elbow_r": 1.1}, {}).at(0.0))
     assert value(world.model, a, "elbow_l") == 0.7
     assert value(world.model, a, "elbow_r") == 1.1
 
 
 def test_whole_numbers_are_angles_too(world):
-    a, _ = make_pose_pair(world.model, {"knee": 1}, {}).at(0.0)
+    a, _ = make_pose_pair(world.model, Poses({"knee": 1}, {}).at(0.0))
     assert value(world.model, a, "knee_r") == 1.0
 
 
 def test_clipped_to_the_joint_ranges(world):
-    a, b = make_pose_pair(world.model, {"knee": 9.0}, {"knee": (0.0, 9.0, 0.0)}).at(math.pi)
+    a, b = make_pose_pair(world.model, Poses({"knee": 9.0}, {"knee": (0.0, 9.0, 0.0)}).at(math.pi))
     low, high = world.model.joint_range[world.model.joint_names.index("knee_l")]
     assert value(world.model, a, "knee_l") == high
     assert value(world.model, b, "knee_l") == low
@@ -52,7 +52,7 @@ def test_clipped_to_the_joint_ranges(world):
 def test_unknown_joint(world, key):
     poses = {"a": {}, "b": {}, key: {"kne": 1.0}}
     with pytest.raises(InputError) as error:
-        make_pose_pair(world.model, poses["a"], poses["b"])
+        make_pose_pair(world.model, Poses(poses["a"], poses["b"]))
     assert str(error.value) == (
         f"behaviour.poses.{key} names the unknown joint 'kne'; valid: ankle_x, ankle_y, chest_x, "
         "chest_y, chest_z, elbow, hip_x, hip_y, hip_z, knee, neck_x, neck_y, neck_z, shoulder_x, "
@@ -61,6 +61,6 @@ def test_unknown_joint(world, key):
 
 
 def test_shapes(world):
-    pair = make_pose_pair(world.model, {}, {})
+    pair = make_pose_pair(world.model, Poses({}, {}))
     assert pair.at(0.0).shape == (2, len(world.model.joint_names))
     assert np.array_equal(pair.low, world.model.joint_range[:, 0])
