@@ -21,7 +21,7 @@ from rotctl.errors import InputError
 LARGEST = 2_000_000  # bytes of a YAML file; people write them
 LARGEST_LINES = 100_000_000  # bytes of a file of JSON lines
 MOST_LINES = 500_000
-MOST_VALUES = 200_000  # of a YAML file: a clip of an hour's work has a hundred thousand
+MOST_VALUES = 200_000  # of a YAML file: a clip of 3600 samples has a hundred thousand
 DEEPEST = 12  # lists and dicts within each other
 MOST_DIGITS = 40  # of a whole number
 

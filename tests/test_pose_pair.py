@@ -24,25 +24,25 @@ def test_constant_and_varying_angles(world):
 
 
 def test_a_name_without_side_means_both(world):
-    a, b = make_pose_pair(world.model, Poses({"elbow": 0.7, "waist_y": 0.2}, {}).at(0.0))
+    a, b = make_pose_pair(world.model, Poses({"elbow": 0.7, "waist_y": 0.2}, {})).at(0.0)
     named = {"elbow_l": 0.7, "elbow_r": 0.7, "waist_y": 0.2}
     assert a.tolist() == [named.get(name, 0.0) for name in world.model.joint_names]
     assert not b.any()
 
 
 def test_a_later_name_wins(world):
-    a, _ = make_pose_pair(world.model, Poses({"elbow": 0.7, "elbow_r": 1.1}, {}).at(0.0))
+    a, _ = make_pose_pair(world.model, Poses({"elbow": 0.7, "elbow_r": 1.1}, {})).at(0.0)
     assert value(world.model, a, "elbow_l") == 0.7
     assert value(world.model, a, "elbow_r") == 1.1
 
 
 def test_whole_numbers_are_angles_too(world):
-    a, _ = make_pose_pair(world.model, Poses({"knee": 1}, {}).at(0.0))
+    a, _ = make_pose_pair(world.model, Poses({"knee": 1}, {})).at(0.0)
     assert value(world.model, a, "knee_r") == 1.0
 
 
 def test_clipped_to_the_joint_ranges(world):
-    a, b = make_pose_pair(world.model, Poses({"knee": 9.0}, {"knee": (0.0, 9.0, 0.0)}).at(math.pi))
+    a, b = make_pose_pair(world.model, Poses({"knee": 9.0}, {"knee": (0.0, 9.0, 0.0)})).at(math.pi)
     low, high = world.model.joint_range[world.model.joint_names.index("knee_l")]
     assert value(world.model, a, "knee_l") == high
     assert value(world.model, b, "knee_l") == low
