@@ -16,12 +16,7 @@ _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
 def quaternion_from_rotation_vector(vector: Array) -> Array:
     """Unit quaternion (4,) of a rotation vector (3,) [rad]."""
-    x, y, z = vector.tolist()
-    angle = sqrt(x * x + y * y + z * z)
-    if angle < 1e-12:
-        return np.array([1.0, 0.0, 0.0, 0.0])
-    scale = sin(0.5 * angle) / angle
-    return np.array([cos(0.5 * angle), scale * x, scale * y, scale * z])
+    return np.array(_turn(*vector.tolist()))
 
 
 def about_up(angle: float) -> Array:
@@ -31,16 +26,7 @@ def about_up(angle: float) -> Array:
 
 def multiply(left: Array, right: Array) -> Array:
     """Hamilton product of two quaternions (4,): first `right`, then `left`."""
-    w, x, y, z = left.tolist()
-    a, b, c, d = right.tolist()
-    return np.array(
-        [
-            w * a - x * b - y * c - z * d,
-            w * b + x * a + y * d - z * c,
-            w * c - x * d + y * a + z * b,
-            w * d + x * c - y * b + z * a,
-        ]
-    )
+    return np.array(_product(*left.tolist(), *right.tolist()))
 
 
 def rotate(quaternion: Array, vector: Array) -> Array:
@@ -60,8 +46,10 @@ def rotate(quaternion: Array, vector: Array) -> Array:
 
 def advance(quaternion: Array, rotation_vector: Array) -> Array:
     """Turn a unit quaternion (4,) by a world-frame rotation vector (3,) [rad]."""
-    turned = multiply(quaternion_from_rotation_vector(rotation_vector), quaternion)
-    return np.asarray(turned / sqrt(dot(turned, turned)))
+    turn = _turn(*rotation_vector.tolist())
+    w, x, y, z = _product(*turn, *quaternion.tolist())
+    length = sqrt(w * w + x * x + y * y + z * z)
+    return np.array([w / length, x / length, y / length, z / length])
 
 
 def rotation_to(start: Array, end: Array) -> Array:
@@ -80,11 +68,12 @@ def rotation_between(start: Array, end: Array) -> Array:
 
     For opposite vectors the axis is undetermined and zero is returned.
     """
-    axis = cross(start, end)
-    sine = sqrt(dot(axis, axis))
+    x, y, z = cross(start, end).tolist()
+    sine = sqrt(x * x + y * y + z * z)
     if sine < 1e-12:
         return np.zeros(3)
-    return np.asarray(axis * (atan2(sine, dot(start, end)) / sine))
+    scale = atan2(sine, dot(start, end)) / sine
+    return np.array([x * scale, y * scale, z * scale])
 
 
 def dot(a: Array, b: Array) -> float:
@@ -100,3 +89,24 @@ def cross(a: Array, b: Array) -> Array:
     ax, ay, az = a.tolist()
     bx, by, bz = b.tolist()
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
+def _turn(x: float, y: float, z: float) -> tuple[float, float, float, float]:
+    """Unit quaternion of a rotation vector."""
+    angle = sqrt(x * x + y * y + z * z)
+    if angle < 1e-12:
+        return 1.0, 0.0, 0.0, 0.0
+    scale = sin(0.5 * angle) / angle
+    return cos(0.5 * angle), scale * x, scale * y, scale * z
+
+
+def _product(
+    w: float, x: float, y: float, z: float, a: float, b: float, c: float, d: float
+) -> tuple[float, float, float, float]:
+    """Hamilton product of two quaternions."""
+    return (
+        w * a - x * b - y * c - z * d,
+        w * b + x * a + y * d - z * c,
+        w * c - x * d + y * a + z * b,
+        w * d + x * c - y * b + z * a,
+    )
