@@ -39,13 +39,18 @@ class Frame:
         axes: (3, 3) rows are forward, left and up.
         orientation: (4,) of the trunk at phase 0, unit quaternion.
         front: (3,) the trunk's front there.
-        trunk_axis: (3,) of the trunk's frame, that lies along left.
+        column, sign: which of the trunk's front, left and up lies along left, or against it.
     """
 
     axes: Array
     orientation: Array
     front: Array
-    trunk_axis: Array
+    column: int
+    sign: float
+
+    def axis(self, trunk_axes: Array) -> Array:
+        """That axis (3,) in the world, of a trunk whose axes (3, 3) are columns."""
+        return trunk_axes[:, self.column] * self.sign
 
 
 def frame_of(about: RollAbout, heading: float) -> Frame:
@@ -56,5 +61,6 @@ def frame_of(about: RollAbout, heading: float) -> Frame:
         axes=np.array([rotate(turn, axis) for axis in np.eye(3)]),
         orientation=orientation,
         front=rotate(orientation, np.array([1.0, 0.0, 0.0])),
-        trunk_axis=facing.trunk_axis,
+        column=int(np.abs(facing.trunk_axis).argmax()),
+        sign=float(facing.trunk_axis.sum()),
     )

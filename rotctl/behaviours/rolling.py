@@ -27,7 +27,6 @@ from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.errors import InputError
-from rotctl.linear import product
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
@@ -203,7 +202,7 @@ class Rolling:
 
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
-        return product(state.trunk_axes, self._frame.trunk_axis)
+        return self._frame.axis(state.trunk_axes)
 
     def _turned(self, state: State) -> float:
         """How far the trunk's front has turned from phase 0 [rad], within a revolution."""

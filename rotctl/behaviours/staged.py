@@ -24,7 +24,6 @@ from rotctl.control.kinds import KINDS, kind
 from rotctl.control.settings import PoseGains
 from rotctl.control.supervisor import SupervisorName
 from rotctl.control.task import TASK, Tasks, task
-from rotctl.linear import product
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import SIDES, Model, body_ids
@@ -299,7 +298,7 @@ class Staged:
 
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay to the left, unit, world."""
-        return product(state.trunk_axes, self._frame.trunk_axis)
+        return self._frame.axis(state.trunk_axes)
 
     def _turned(self, state: State) -> float:
         """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
