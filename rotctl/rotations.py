@@ -2,14 +2,18 @@
 
 The arithmetic is on Python's numbers: for three or four of them that is several times
 faster than numpy, and it needs no BLAS, which adds in another order on other processors.
+What runs at every step and has several in a row uses the functions of plain numbers.
 """
 
+from collections.abc import Sequence
 from math import atan2, cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Numbers = Sequence[float]
+Triple = tuple[float, float, float]
 
 _CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])
 
@@ -31,25 +35,12 @@ def multiply(left: Array, right: Array) -> Array:
 
 def rotate(quaternion: Array, vector: Array) -> Array:
     """Rotate a vector (3,) by a unit quaternion (4,)."""
-    w, x, y, z = quaternion.tolist()
-    a, b, c = vector.tolist()
-    # v + w t + q x t with t = 2 q x v
-    ta, tb, tc = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
-    return np.array(
-        [
-            a + w * ta + y * tc - z * tb,
-            b + w * tb + z * ta - x * tc,
-            c + w * tc + x * tb - y * ta,
-        ]
-    )
+    return np.array(rotated(quaternion.tolist(), vector.tolist()))
 
 
 def advance(quaternion: Array, rotation_vector: Array) -> Array:
     """Turn a unit quaternion (4,) by a world-frame rotation vector (3,) [rad]."""
-    turn = _turn(*rotation_vector.tolist())
-    w, x, y, z = _product(*turn, *quaternion.tolist())
-    length = sqrt(w * w + x * x + y * y + z * z)
-    return np.array([w / length, x / length, y / length, z / length])
+    return np.array(advanced(quaternion.tolist(), rotation_vector.tolist()))
 
 
 def rotation_to(start: Array, end: Array) -> Array:
@@ -63,19 +54,6 @@ def rotation_to(start: Array, end: Array) -> Array:
     return np.array([scale * x, scale * y, scale * z])
 
 
-def rotation_between(start: Array, end: Array) -> Array:
-    """Shortest rotation vector (3,) [rad] that turns unit vector `start` into `end`.
-
-    For opposite vectors the axis is undetermined and zero is returned.
-    """
-    x, y, z = cross(start, end).tolist()
-    sine = sqrt(x * x + y * y + z * z)
-    if sine < 1e-12:
-        return np.zeros(3)
-    scale = atan2(sine, dot(start, end)) / sine
-    return np.array([x * scale, y * scale, z * scale])
-
-
 def dot(a: Array, b: Array) -> float:
     """Dot product of two short vectors, such as (3,), added from left to right."""
     total = 0.0  # not sum(), which some versions of Python add with compensation
@@ -86,9 +64,47 @@ def dot(a: Array, b: Array) -> float:
 
 def cross(a: Array, b: Array) -> Array:
     """Cross product of two vectors (3,)."""
-    ax, ay, az = a.tolist()
-    bx, by, bz = b.tolist()
-    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+    return np.array(crossed(a.tolist(), b.tolist()))
+
+
+def rotation_between(start: Numbers, end: Numbers) -> Triple:
+    """Shortest rotation vector [rad] that turns unit vector `start` into `end`.
+
+    For opposite vectors the axis is undetermined and zero is returned.
+    """
+    x, y, z = crossed(start, end)
+    sine = sqrt(x * x + y * y + z * z)
+    if sine < 1e-12:
+        return 0.0, 0.0, 0.0
+    scale = atan2(sine, start[0] * end[0] + start[1] * end[1] + start[2] * end[2]) / sine
+    return x * scale, y * scale, z * scale
+
+
+def rotated(quaternion: Numbers, vector: Numbers) -> Triple:
+    """`rotate` of plain numbers."""
+    w, x, y, z = quaternion
+    a, b, c = vector
+    # v + w t + q x t with t = 2 q x v
+    ta, tb, tc = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
+    return (
+        a + w * ta + y * tc - z * tb,
+        b + w * tb + z * ta - x * tc,
+        c + w * tc + x * tb - y * ta,
+    )
+
+
+def advanced(quaternion: Numbers, rotation_vector: Numbers) -> tuple[float, float, float, float]:
+    """`advance` of plain numbers."""
+    w, x, y, z = _product(*_turn(*rotation_vector), *quaternion)
+    length = sqrt(w * w + x * x + y * y + z * z)
+    return w / length, x / length, y / length, z / length
+
+
+def crossed(a: Numbers, b: Numbers) -> Triple:
+    """`cross` of plain numbers."""
+    ax, ay, az = a
+    bx, by, bz = b
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
 def _turn(x: float, y: float, z: float) -> tuple[float, float, float, float]:

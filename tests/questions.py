@@ -34,7 +34,7 @@ def any_task(name, model, rng, stiffness=5.0, damping=2.0, weight=0.05):
 
 def with_tasks(command, *more):
     """The same command with more tasks."""
-    return replace(command, tasks=np.concatenate((command.tasks, *more)))
+    return command._replace(tasks=np.concatenate((command.tasks, *more)))
 
 
 @dataclass(frozen=True)
@@ -105,4 +105,4 @@ class Asking:
         if command.slots is None:
             return asked
         behind = range(len(self._behaviour.tasks), len(self.tasks))
-        return replace(asked, slots=[*command.slots, *behind])
+        return asked._replace(slots=[*command.slots, *behind])

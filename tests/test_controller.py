@@ -148,7 +148,7 @@ def test_supervisor_as_written(world, steps):
 def test_other_supervisors(world, supported, name):
     chosen = Controller(world.model, world.settings)
     for step in supported[::15]:
-        step = replace(step, command=replace(step.command, supervisor=name))
+        step = replace(step, command=step.command._replace(supervisor=name))
         state, decision = world.state(step), decide(world, chosen, step)
         candidates = ~world.model.excluded[state.contacts.body]
         closing = contact_jacobian(world.mj, state.data, state.contacts)[::3] @ state.velocity < 0
@@ -186,8 +186,7 @@ def test_a_contact_held_out_of_control_changes_nothing(world):
     state, step = head_stand(world)
     keep = state.contacts.body != world.mj.body("head").id
     contacts = state.contacts
-    blind = replace(
-        state,
+    blind = state._replace(
         contacts=replace(
             contacts,
             body=contacts.body[keep],

@@ -66,8 +66,7 @@ def weighed(command, linear=None, spin=None, contact=None, pose=None, force=None
     held = {"weight": contact, "force": force}
     held = {name: value for name, value in held.items() if value is not None}
     tracked = {} if pose is None else {"weight": pose}
-    return replace(
-        command,
+    return command._replace(
         contact=replace(command.contact, **held),
         pose=replace(command.pose, **tracked),
     )

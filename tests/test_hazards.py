@@ -130,7 +130,7 @@ def test_the_literal_form_agrees_among_boxes(scenario, hit):
     tight = replace(settings, backend="reference", solver="qpsolvers:daqp")
     state = read(scenario.model, hit)
     command = scenario.behaviour.command(scenario.behaviour.begin(0.0, state), state)
-    command = replace(command, supervisor="none")
+    command = command._replace(supervisor="none")
     condensed = Controller(scenario.model, tight).decide(state, command, 0.5)
     literal = Controller(scenario.model, replace(tight, form="literal"))
     written = literal.decide(state, command, 0.5)

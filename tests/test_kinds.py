@@ -72,7 +72,7 @@ def test_with_no_gains_the_rows_are_the_rate_of_what_they_measure(world, states,
         rows = rows_at(world, position, velocity, task)
         if KINDS[name].momentum:
             step = replace(world.steps[0], position=position, velocity=velocity)
-            state, stack = world.stack(step, replace(step.command, tasks=task))
+            state, stack = world.stack(step, step.command._replace(tasks=task))
             M = np.zeros((world.mj.nv, world.mj.nv))
             mujoco.mj_fullM(world.mj, state.data, M)
             (momenta, *_) = literal.objectives(stack, world.model, state, M)

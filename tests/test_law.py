@@ -121,8 +121,8 @@ def test_a_task_of_great_weight_is_met(name):
     def look(question):
         nonlocal met
         task = any_task(name, question.model, rng, weight=1e4)
-        alone = replace(question.command, tasks=np.zeros(0, task.dtype))
-        alone = replace(alone, contact=replace(alone.contact, weight=0.0))
+        alone = question.command._replace(tasks=np.zeros(0, task.dtype))
+        alone = alone._replace(contact=replace(alone.contact, weight=0.0))
         stack = replace(question, command=alone).stack(task)
         stack = replace(stack, torque_limit=np.full(question.model.mj.nu, 1e9))
         (rows,) = stack.tasks

@@ -356,7 +356,7 @@ def test_the_controller_meets_a_closing_contact_at_the_surface(world, settings, 
     for step, model, data in closing_states(world, settings, supported):
         controller = Controller(model, control)
         state = controller.read(data)
-        command = replace(step.command, contact=hold, supervisor="none")
+        command = step.command._replace(contact=hold, supervisor="none")
         decision = controller.decide(state, command, step.blend)
         used = replace(
             state.contacts, **{k: v[decision.used] for k, v in vars(state.contacts).items()}

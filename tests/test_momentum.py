@@ -46,9 +46,9 @@ def test_reading_does_not_change_with_the_data(world):
     """A Momentum is a copy: stepping on does not change it."""
     data = world.data(*world.in_the_air(3))
     momentum = read_momentum(world.mj, data)
-    before = {name: np.copy(value) for name, value in vars(momentum).items()}
+    before = {name: np.copy(value) for name, value in momentum._asdict().items()}
     mujoco.mj_step(world.mj, data, 50)
-    assert all(np.array_equal(before[name], vars(momentum)[name]) for name in before)
+    assert all(np.array_equal(before[name], getattr(momentum, name)) for name in before)
 
 
 def test_com_velocity_is_the_derivative_of_com(world):

@@ -55,7 +55,7 @@ def test_the_blend_is_weighed_by_its_rate(world, supported):
 def test_poses_look_equally_far_ahead(world, supported):
     """The horizon is a time of its own where it is longer than a period."""
     ahead = replace(supported[0].command.pose, horizon=1 / 30)
-    command = replace(supported[0].command, pose=ahead)
+    command = supported[0].command._replace(pose=ahead)
     torques = []
     for rate in (30.0, 60.0, 240.0):
         _, stack = world.stack(supported[0], command, replace(world.settings, rate=rate))

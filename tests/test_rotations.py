@@ -81,7 +81,7 @@ def test_rotation_between_at_the_ends_of_its_range(angle):
 
 def test_rotation_between_opposite_vectors_is_zero():
     up = np.array([0.0, 0.0, 1.0])
-    assert not rotations.rotation_between(up, -up).any()
+    assert rotations.rotation_between(up, -up) == (0.0, 0.0, 0.0)
 
 
 def test_cross():

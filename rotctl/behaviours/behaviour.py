@@ -1,7 +1,7 @@
 """What the simulation asks of a behaviour."""
 
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
+from typing import NamedTuple, Protocol, TypeVar
 
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.settings import PoseGains, TaskGains
@@ -25,8 +25,7 @@ class Placement:
     pose: Array
 
 
-@dataclass(frozen=True)
-class Signals:
+class Signals(NamedTuple):
     """What the log keeps of a behaviour at one instant.
 
     Attributes:

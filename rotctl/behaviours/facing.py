@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotctl.motion import RollAbout
-from rotctl.rotations import Array, about_up, multiply, rotate
+from rotctl.rotations import Array, about_up, crossed, multiply, rotate
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -51,6 +51,13 @@ class Frame:
     def axis(self, trunk_axes: Array) -> Array:
         """That axis (3,) in the world, of a trunk whose axes (3, 3) are columns."""
         return trunk_axes[:, self.column] * self.sign
+
+    def turned(self, trunk_axes: Array) -> float:
+        """How far its front has turned about left from phase 0 [rad], within a revolution."""
+        (x, y, z), now = self.front.tolist(), trunk_axes[:, 0].tolist()
+        across, left = crossed((x, y, z), now), self.axes[1].tolist()
+        sine = left[0] * across[0] + left[1] * across[1] + left[2] * across[2]
+        return math.atan2(sine, x * now[0] + y * now[1] + z * now[2])
 
 
 def frame_of(about: RollAbout, heading: float) -> Frame:

@@ -14,8 +14,7 @@ the root's orientation and angular velocity with what is wanted of the whole bod
 """
 
 import math
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Strict
@@ -41,7 +40,7 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array, advance, cross, dot
+from rotctl.rotations import Array, advance, dot
 from rotctl.settings import STRICT, Finite
 
 
@@ -88,8 +87,7 @@ class RollingSettings:
         return Rolling(self, model, control, measured)
 
 
-@dataclass(frozen=True)
-class RollingMemory:
+class RollingMemory(NamedTuple):
     """What a roll remembers from one control step to the next.
 
     Attributes:
@@ -164,7 +162,7 @@ class Rolling:
             self._period,
             self._measured.correction_time,
         )
-        turned = self._turned(state)
+        turned = self._frame.turned(state.trunk_axes) + self._slope
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
         if self._measured.measure == "root":
             now = excursion.on_root(now, state.position[3:7], self._frame.orientation)
@@ -203,12 +201,6 @@ class Rolling:
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
         return self._frame.axis(state.trunk_axes)
-
-    def _turned(self, state: State) -> float:
-        """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
-        front = state.trunk_axes[:, 0]
-        across = dot(self._left, cross(self._frame.front, front))
-        return math.atan2(across, dot(self._frame.front, front)) + self._slope
 
 
 def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:

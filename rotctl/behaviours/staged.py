@@ -29,7 +29,7 @@ from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import SIDES, Model, body_ids
 from rotctl.mechanics.state import State
 from rotctl.motion import Poses, RollAbout, make_pose_pair
-from rotctl.rotations import Array, advance, cross, dot
+from rotctl.rotations import Array, advance
 from rotctl.settings import STRICT, Finite, NonNegative, Vector
 
 SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
@@ -239,7 +239,8 @@ class Staged:
             self._period,
             measured.correction_time,
         )
-        now = excursion.keep_phase(now, self._turned(state), self._period, measured.phase_time)
+        turned = self._frame.turned(state.trunk_axes)
+        now = excursion.keep_phase(now, turned, self._period, measured.phase_time)
         slow = float(np.abs(state.velocity).max()) < SLOW
         memory = replace(
             before,
@@ -299,12 +300,6 @@ class Staged:
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay to the left, unit, world."""
         return self._frame.axis(state.trunk_axes)
-
-    def _turned(self, state: State) -> float:
-        """How far the trunk's front has turned from phase 0 [rad], within a revolution."""
-        front = state.trunk_axes[:, 0]
-        across = dot(self.axes[1], cross(self._frame.front, front))
-        return math.atan2(across, dot(self._frame.front, front))
 
 
 def _names(model: Model, name: str, wanted: TaskSettings) -> list[str]:

@@ -65,7 +65,11 @@ def serves(settings: ControllerSettings, model: Model) -> bool:
 
 
 class CompiledStep:
-    """Reads the state and decides torques."""
+    """Reads the state and decides torques.
+
+    Attributes:
+        lacks: kinds of task that have no function in C.
+    """
 
     def __init__(self, model: Model, settings: ControllerSettings) -> None:
         """Hand the run's constants over; `library()` must be there."""
@@ -89,6 +93,7 @@ class CompiledStep:
         self._command.held_out = self._held_out.ctypes.data
         # By their numbers: where C has the function of that name, and whether over qddot.
         addresses = [_address(found, f"rotctl_kind_{name}") for name in KINDS]
+        self.lacks = [name for name, at in zip(KINDS, addresses, strict=True) if at is None]
         self._kinds = (_pointer * len(KINDS))(*addresses)
         self._over_motion = (ctypes.c_ubyte * len(KINDS))(*(not k.momentum for k in KINDS.values()))
         constants = _constants(model, settings)

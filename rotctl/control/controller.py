@@ -22,6 +22,10 @@ from rotctl.qp.active_set import ActiveSet
 from rotctl.rotations import Array
 
 LOGGED_ROWS = 3  # of each task
+LACKS = (
+    "no function in C for tasks of kind {kinds}; steps that have one are decided by the numpy "
+    "reference, several times slower"
+)
 
 
 class Controller:
@@ -62,6 +66,8 @@ class Controller:
         self.backend: BackendName = "compiled" if self._step else "reference"
         missing = "the compiled control step " + NOT_BUILT.format(slower="several times")
         self.notice = missing if wanted and not self._step else ""
+        if self._step and self._step.lacks:
+            self.notice = LACKS.format(kinds=", ".join(self._step.lacks))
 
     def read(self, data: mujoco.MjData) -> State:
         """The state in `data`, whose positions and contacts are up to date."""

@@ -1,6 +1,6 @@
 """What the controller decides at one instant, and how surely."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,7 @@ from rotctl.rotations import Array
 SOLVED_BY_FALLBACK, POSE_ONLY = 1, 2  # status; 0 is solved by the chosen solver
 
 
-@dataclass(frozen=True)
-class Decision:
+class Decision(NamedTuple):
     """What the controller does at one instant.
 
     Attributes:

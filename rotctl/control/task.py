@@ -1,6 +1,6 @@
 """What a behaviour wants of one control step: tasks, two poses, and how they are pursued."""
 
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,8 +29,7 @@ TASK = np.dtype(
 Tasks = NDArray[np.void]
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(NamedTuple):
     """A behaviour's wishes at one instant.
 
     Attributes:
@@ -57,8 +56,7 @@ class Command:
 
     def copy(self) -> "Command":
         """One that later steps of the behaviour leave alone."""
-        return replace(
-            self,
+        return self._replace(
             tasks=self.tasks.copy(),
             pose_a=self.pose_a.copy(),
             pose_b=self.pose_b.copy(),

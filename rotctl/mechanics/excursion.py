@@ -18,14 +18,13 @@ drifts from the body, in 20 s by up to a fifth of a revolution, and then poses c
 too early: `keep_phase` pulls it to how far the trunk has turned, with a time constant of its own.
 """
 
-from dataclasses import dataclass, replace
 from math import pi, tau
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.rotations import Array, advance, cross, dot, multiply, rotate, rotation_between
+from rotctl.rotations import Array, advanced, crossed, multiply, rotated, rotation_between
 from rotctl.settings import STRICT, Positive
 
 ExcursionName = Literal["oriented", "integral", "root"]
@@ -48,8 +47,7 @@ class ExcursionSettings:
     description: str = ""
 
 
-@dataclass(frozen=True)
-class Excursion:
+class Excursion(NamedTuple):
     """AE at one instant.
 
     Attributes:
@@ -88,14 +86,17 @@ def integrate(
         period: [s].
         correction_time: time constant of the pull towards the trunk [s].
     """
-    turn = angular_velocity * period
-    orientation = advance(excursion.orientation, turn)
-    drift = cross(rotate(orientation, rolling_axis), trunk_axis)
-    pulled = advance(orientation, drift * min(1.0, period / correction_time))
+    x, y, z = angular_velocity.tolist()
+    turn = x * period, y * period, z * period
+    left = rolling_axis.tolist()
+    orientation = advanced(excursion.orientation.tolist(), turn)
+    dx, dy, dz = crossed(rotated(orientation, left), trunk_axis.tolist())
+    pull = min(1.0, period / correction_time)
+    pulled = advanced(orientation, (dx * pull, dy * pull, dz * pull))
+    a, b, c = excursion.angle.tolist()
+    along = left[0] * turn[0] + left[1] * turn[1] + left[2] * turn[2]
     return Excursion(
-        angle=excursion.angle + turn,
-        orientation=pulled,
-        phase=excursion.phase + dot(rolling_axis, turn),
+        np.array([a + turn[0], b + turn[1], c + turn[2]]), np.array(pulled), excursion.phase + along
     )
 
 
@@ -119,7 +120,7 @@ def on_root(excursion: Excursion, root: Array, at_phase_0: Array) -> Excursion:
         at_phase_0: (4,) the root's orientation there, unit quaternion.
     """
     back = at_phase_0 * [1.0, -1.0, -1.0, -1.0]
-    return replace(excursion, orientation=multiply(root, back))
+    return excursion._replace(orientation=multiply(root, back))
 
 
 def error(excursion: Excursion, target: Array, rolling_axis: Array, name: ExcursionName) -> Array:
@@ -131,6 +132,8 @@ def error(excursion: Excursion, target: Array, rolling_axis: Array, name: Excurs
     difference = target - excursion.angle
     if name == "integral":
         return difference
-    carried = rotate(excursion.orientation, rolling_axis)
-    along = rolling_axis * dot(rolling_axis, difference)
-    return np.asarray(rotation_between(carried, rolling_axis) + along)
+    left, (x, y, z) = rolling_axis.tolist(), difference.tolist()
+    carried = rotated(excursion.orientation.tolist(), left)
+    across = rotation_between(carried, left)
+    along = left[0] * x + left[1] * y + left[2] * z
+    return np.array([a + b * along for a, b in zip(across, left, strict=True)])

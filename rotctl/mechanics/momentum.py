@@ -1,6 +1,6 @@
 """Whole-body momentum, composite inertia and angular velocity about the centre of mass."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -10,8 +10,7 @@ from rotctl.mechanics.model import ROOT_BODY
 from rotctl.rotations import Array, cross
 
 
-@dataclass(frozen=True)
-class Momentum:
+class Momentum(NamedTuple):
     """Rotation indices of the character at one instant, world axes.
 
     Attributes:

@@ -1,6 +1,6 @@
 """What the controller sees: one fresh reading of the simulated character."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -13,8 +13,7 @@ from rotctl.mechanics.momentum import Momentum, read_momentum
 from rotctl.rotations import Array
 
 
-@dataclass(frozen=True)
-class State:
+class State(NamedTuple):
     """The character at the start of one control step.
 
     Attributes:

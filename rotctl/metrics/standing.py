@@ -95,12 +95,3 @@ def failure(metrics: StandingMetrics, criteria: StandingCriteria) -> str:
         (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),
     )
     return next((reason for kept, reason in rules if not kept), "")
-
-
-def lines(summary: dict[str, object]) -> list[tuple[str, str]]:
-    """What people want to read of a summary row: label and text."""
-    return [
-        ("lean", "{lean_most:.0f} deg at most, {lean_end:.0f} at the end"),
-        ("sway", "{sway:.2f} m at most, {speed_end:.2f} m/s at the end"),
-        ("contact", "{other_contact:.2f} s with more than the feet"),
-    ]

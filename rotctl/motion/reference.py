@@ -50,12 +50,13 @@ class ReferencePair:
 
     Attributes:
         cycle: (n, nu) the clip at even phases [rad].
-        table: (STEPS + 1, 2, nu) r_a and r_b at even phases of one cycle [rad]; the last
-            row is the first.
+        table: (STEPS, 2, nu) r_a and r_b at even phases of one cycle [rad].
+        rise: (STEPS, 2, nu) from there to the next of them [rad].
     """
 
     cycle: Array
     table: Array
+    rise: Array
 
     def start(self, phase: float) -> Array:
         """The pose (nu,) [rad] to begin in at a phase [rad]: the clip's own."""
@@ -65,8 +66,7 @@ class ReferencePair:
         """Both poses (2, nu) [rad] at a phase [rad], between the two nearest rows."""
         place = phase / tau % 1.0 * STEPS
         row = min(floor(place), STEPS - 1)
-        low = self.table[row]
-        return np.asarray(low + (place - row) * (self.table[row + 1] - low))
+        return np.asarray(self.table[row] + (place - row) * self.rise[row])
 
 
 def make_reference_pair(model: Model, clip: Clip, settings: ReferenceSettings) -> ReferencePair:
@@ -79,7 +79,8 @@ def make_reference_pair(model: Model, clip: Clip, settings: ReferenceSettings) -
     cycle = np.clip(cycle, *model.joint_range.T)
     middle = np.linspace(0.0, 1.0, STEPS + 1) + settings.lead
     sides = [periodic(cycle, middle + side * settings.window) for side in (1.0, -1.0)]
-    return ReferencePair(cycle, np.stack(sides, axis=1))
+    table = np.stack(sides, axis=1)
+    return ReferencePair(cycle, table[:-1], np.diff(table, axis=0))
 
 
 def _added(model: Model, offsets: Mapping[str, Sequence[float]], samples: int) -> Array:

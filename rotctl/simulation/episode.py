@@ -5,8 +5,7 @@ bench, the search and the tests look at them.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import mujoco
 
@@ -61,8 +60,7 @@ class Parts(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Moment:
+class Moment(NamedTuple):
     """One control step.
 
     Attributes:

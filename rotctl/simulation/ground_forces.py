@@ -8,9 +8,8 @@ that the mean forces always sum up to the momentum that the ground gave.
 
 import ctypes
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import mujoco
 import numpy as np
@@ -25,8 +24,7 @@ from rotctl.rotations import Array
 SLOTS = constant("SLOTS")  # what a log row can hold at most
 
 
-@dataclass(frozen=True)
-class GroundForces:
+class GroundForces(NamedTuple):
     """Forces on the character, world axes; loose things on the ground count as ground.
 
     Attributes:

@@ -1,5 +1,6 @@
 """Advancing the physics by one control period: an interface, and MuJoCo's own stepping."""
 
+from math import isfinite
 from typing import Protocol
 
 import mujoco
@@ -95,10 +96,10 @@ def trouble(data: mujoco.MjData, periods: int, period: float) -> str:
         periods: of `period` [s] that the clock should show.
     """
     counts = data.warning.number
-    if counts.any():
+    if any(counts.tolist()):
         kind = mujoco.mjtWarning(int(np.flatnonzero(counts)[0]))
         return f"MuJoCo warns: {WARNINGS[kind]}"
-    if not np.isfinite(data.qpos.sum() + data.qvel.sum()):
+    if not isfinite(np.add.reduce(data.qpos) + np.add.reduce(data.qvel)):
         return "the state is not finite"
     if abs(data.time - periods * period) > 0.5 * period:
         return "MuJoCo reset the simulation"
