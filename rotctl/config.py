@@ -32,6 +32,7 @@ from rotctl.mechanics.character import Character
 from rotctl.mechanics.disturbance import DisturbanceSettings
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.physics import Physics
+from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
@@ -60,6 +61,7 @@ class Config:
     disturbance: DisturbanceSettings
     excursion: ExcursionSettings
     physics: Physics
+    plant: PlantSettings
     start: StartSettings
     terrain: Terrain
     seed: Annotated[int, Strict(), Field(ge=0, lt=2**63)]

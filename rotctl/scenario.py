@@ -3,7 +3,7 @@
 import hashlib
 import json
 import re
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -19,6 +19,7 @@ from rotctl.mechanics import model as models
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
+from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.terrain import FASTEST
 from rotctl.motion import load_clip
 from rotctl.simulation import start as starts
@@ -34,14 +35,21 @@ class Scenario:
     """One run, ready to be simulated once.
 
     Attributes:
+        model: what is simulated.
+        known: what control and behaviour know of it; mostly the same.
+        observer: reads what is simulated; the controller itself, where it sees just that.
         run_id: 12 hex digits; the same for the same config, log schema and model.
     """
 
     config: Config
     model: Model
+    known: Model
     behaviour: Behaviour[Any]
     controller: Controller
+    observer: Controller
     stepper: Stepper
+    senses: Senses
+    motors: Motors
     disturbance: Disturbance
     start: Start
     run_id: str
@@ -54,24 +62,33 @@ def build(config: Config) -> Scenario:
         InputError: parts that do not fit together, with one clear line.
     """
     control = config.controller
-    model = model_of(config)
+    known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
+    model = _varied(config, Variation(config.plant, plant)) if config.plant.differs else known
     _check(config)
-    behaviour = config.behaviour.make(model, control, config.excursion)
+    behaviour = config.behaviour.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
+    controller = Controller(known, control)
+    motors = Motors(model, config.plant.delay)
+    substeps = config.physics.substeps
+    senses = Senses(known, model, config.plant, motors, substeps, plant)
     return Scenario(
         config=config,
         model=model,
+        known=known,
         behaviour=behaviour,
         disturbance=config.disturbance.make(model, behaviour.axes, generator),
-        controller=Controller(model, control),
+        controller=controller,
+        observer=controller if senses.exact else Controller(model, control),
         stepper=_stepper(config.physics, model),
+        senses=senses,
+        motors=motors,
         start=starts.draw(
             config.start,
-            model,
+            known,
             config.behaviour.roll_about,
             np.random.default_rng(config.seed),
         ),
-        run_id=run_id(config, model),
+        run_id=run_id(config, known),
     )
 
 
@@ -102,10 +119,21 @@ def model_of(config: Config) -> Model:
     Raises:
         InputError: the numbers do not make a model.
     """
+    return _model(config.character, config.terrain, *_world(config))
+
+
+def _varied(config: Config, variation: Variation) -> Model:
+    """The same with what differs in this run."""
+    terrain = replace(config.terrain, friction=variation.friction * config.terrain.friction)
+    return models.build(config.character, terrain, *_world(config), variation.apply)
+
+
+def _world(config: Config) -> tuple[Physics, float, int, float]:
+    """Physics, control rate [Hz], the terrain's seed and its reach [m]."""
     terrain = config.terrain
     seed = config.seed if terrain.seeded else 0
     reach = 0.0 if terrain.endless else FASTEST * config.duration
-    return _model(config.character, terrain, config.physics, config.controller.rate, seed, reach)
+    return config.physics, config.controller.rate, seed, reach
 
 
 def run_id(config: Config, model: Model) -> str:

@@ -159,7 +159,7 @@ def _led_to(scenario: Scenario, log: RunLog) -> int:
             if not (_same(data.qpos, qpos) and _same(data.qvel, qvel)):
                 return row
             scenario.disturbance.apply(data, period)
-            stepper.advance(data, torques[row], scenario.controller.read(data).contacts)
+            stepper.advance(data, torques[row], scenario.observer.read(data).contacts)
     return log.steps
 
 

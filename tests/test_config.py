@@ -12,8 +12,8 @@ from rotctl.config import check, load, to_dict, to_yaml
 from rotctl.errors import InputError
 
 GROUPS = (
-    "behaviour, character, controller, criteria, disturbance, excursion, physics, start, terrain, "
-    "seed, duration"
+    "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "
+    "terrain, seed, duration"
 )
 NOT_READ = (
     "cannot be read; write key=value, and quote a text with special characters: \"key='a text'\""

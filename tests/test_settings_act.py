@@ -58,6 +58,7 @@ CASES = {
         r"disturbance\..*|controller\.sees_disturbance",
     ),
     "wind": Case(("disturbance=wind",), r"disturbance\..*"),
+    "plant": Case(("plant=randomised",), r"plant\..*"),
     "modified": Case(
         ("controller.supervisor=modified",), r"controller\.thresholds\.separation", seconds=0.8
     ),

@@ -6,7 +6,7 @@ is block diagonal in the two, so that control can work on full vectors and leave
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -93,6 +93,7 @@ def build(
     control_rate: float,
     seed: int = 0,
     reach: float = 60.0,
+    vary: Callable[[mujoco.MjSpec], None] = lambda spec: None,
 ) -> Model:
     """Compile a model.
 
@@ -100,6 +101,7 @@ def build(
         control_rate: [Hz]; the physics step is 1 / (control_rate * substeps).
         seed: of a terrain that is drawn at random.
         reach: how far ahead of the start there is ground at least [m].
+        vary: changes the character before there is a ground.
 
     Raises:
         InputError: the numbers do not make a model, the model does not stand as tall as it
@@ -116,6 +118,7 @@ def build(
     try:
         added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
         add_character(spec, replace(character, joint_armature=character.joint_armature + added))
+        vary(spec)
         ground.add(spec)
         mj, mjcf = _compiled(spec)
     except ValueError as error:

@@ -14,6 +14,7 @@ from rotctl.control import Command, Controller, Decision
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.pair_limit import crowded
+from rotctl.mechanics.plant import Motors, Senses
 from rotctl.mechanics.state import State
 from rotctl.mechanics.terrain import Ground
 from rotctl.rotations import Array
@@ -31,7 +32,17 @@ class Parts(Protocol):
 
     @property
     def model(self) -> Model:
-        """The character in its world."""
+        """The character in its world, as it is simulated."""
+        ...
+
+    @property
+    def senses(self) -> Senses:
+        """What control sees of it."""
+        ...
+
+    @property
+    def motors(self) -> Motors:
+        """What comes of control's torques."""
         ...
 
     @property
@@ -42,6 +53,11 @@ class Parts(Protocol):
     @property
     def controller(self) -> Controller:
         """What moves it."""
+        ...
+
+    @property
+    def observer(self) -> Controller:
+        """What reads the character as it is."""
         ...
 
     @property
@@ -64,21 +80,25 @@ class Moment(NamedTuple):
     """One control step.
 
     Attributes:
-        state: that the controller saw.
+        truth: the state there was.
+        state: what the controller saw of it; mostly the same.
         command, signals: of the behaviour.
         blend: gamma of the step before.
         decision: of the controller.
+        torque: (nu,) that acted [N m].
         wrench: (6,) from outside, about the centre of mass [N, N m].
         forces: what the ground did.
         ground_height: below the centre of mass [m].
         remark: of the physics; mostly empty.
     """
 
+    truth: State
     state: State
     command: Command
     signals: Signals
     blend: float
     decision: Decision
+    torque: Array
     wrench: Array
     forces: GroundForces
     ground_height: float
@@ -120,9 +140,11 @@ class Episode:
             outside = parts.disturbance.apply(data, period)
             mark("physics")
             crowd = crowded(model.mj, data)
-            state = controller.read(data)
+            truth = state = parts.observer.read(data)
+            if not parts.senses.exact:
+                state = controller.read(parts.senses.look(data))
             mark("state")
-            self.left = _left(model.ground, state)
+            self.left = _left(model.ground, truth)
             if self.left:
                 return
             if memory is None:
@@ -133,12 +155,25 @@ class Episode:
             mark("command")
             decision = controller.decide(state, command, blend)
             mark("decision")
-            forces = parts.stepper.advance(data, decision.torque, state.contacts)
-            x, y, _ = state.momentum.com.tolist()
+            torque = parts.motors.act(decision.torque)
+            forces = parts.stepper.advance(data, torque, state.contacts)
+            x, y, _ = truth.momentum.com.tolist()
             height = model.ground.height(x, y)
             remark = "; ".join(filter(None, (crowd, parts.stepper.remark())))
             mark("physics")
-            yield Moment(state, command, signals, blend, decision, outside, forces, height, remark)
+            yield Moment(
+                truth=truth,
+                state=state,
+                command=command,
+                signals=signals,
+                blend=blend,
+                decision=decision,
+                torque=torque,
+                wrench=outside,
+                forces=forces,
+                ground_height=height,
+                remark=remark,
+            )
             blend = decision.blend
 
 

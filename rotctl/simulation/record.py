@@ -6,13 +6,13 @@ from rotctl.simulation.episode import Moment
 
 def record(buffer: TrajectoryBuffer, i: int, moment: Moment) -> None:
     """Write row `i` of the log."""
-    state, command, signals = moment.state, moment.command, moment.signals
+    truth, command, signals = moment.truth, moment.command, moment.signals
     decision, forces = moment.decision, moment.forces
-    trajectory, momentum = buffer.trajectory, state.momentum
-    trajectory.time[i] = state.time
-    trajectory.qpos[i] = state.position
-    trajectory.qvel[i] = state.velocity
-    trajectory.ctrl[i] = decision.torque
+    trajectory, momentum = buffer.trajectory, truth.momentum
+    trajectory.time[i] = truth.time
+    trajectory.qpos[i] = truth.position
+    trajectory.qvel[i] = truth.velocity
+    trajectory.ctrl[i] = moment.torque
     trajectory.com[i] = momentum.com
     trajectory.ground_height[i] = moment.ground_height
     trajectory.com_velocity[i] = momentum.com_velocity
@@ -27,7 +27,7 @@ def record(buffer: TrajectoryBuffer, i: int, moment: Moment) -> None:
     trajectory.blend[i] = decision.blend
     trajectory.phase[i] = signals.phase
     trajectory.trunk_axis[i] = signals.axis
-    trajectory.trunk_axes[i] = state.trunk_axes
+    trajectory.trunk_axes[i] = truth.trunk_axes
     commanded = buffer.command
     commanded.axes[i] = signals.axes
     commanded.stage[i] = signals.stage
@@ -37,9 +37,10 @@ def record(buffer: TrajectoryBuffer, i: int, moment: Moment) -> None:
     commanded.error[i, slots] = decision.error
     commanded.wanted[i, slots] = decision.wanted
     commanded.predicted[i, slots] = decision.predicted
+    seen = moment.state.contacts.count
     contacts, capacity = buffer.contacts, buffer.contacts.body.shape[1]
-    m, k = min(state.contacts.count, capacity), min(len(forces.body), capacity)
-    contacts.count[i] = state.contacts.count
+    m, k = min(seen, capacity), min(len(forces.body), capacity)
+    contacts.count[i] = seen
     contacts.body[i, :k] = forces.body[:k]
     contacts.position[i, :k] = forces.position[:k]
     contacts.normal[i, :k] = forces.normal[:k]
