@@ -11,6 +11,7 @@ from typing import NoReturn
 
 from rotctl.errors import RotctlError
 from rotctl.parser import parse
+from rotctl.report import gl
 from rotctl.wording import one_line
 
 
@@ -27,6 +28,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)
     try:
+        gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
         with _terminated_like_interrupted():
             code = int(arguments.command(arguments))
             if sys.stdout:  # None where the shell has closed it

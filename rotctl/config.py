@@ -7,6 +7,7 @@ cannot execute code or look anything up.
 
 import json
 import re
+from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Annotated, Any
 
@@ -118,21 +119,38 @@ def check(data: Any) -> Config:
     Raises:
         InputError: one line for the first thing that is wrong.
     """
+    _refuse(data, _absurd_text)  # before messages of other checks repeat it
     found = checked(Config, data)
-    for parts, value in leaves(data):
-        if complaint := _absurd(parts, value):
-            raise InputError(f"{dotted(parts)}={brief(value)}: {complaint}")
+    _refuse(data, _absurd_number)
     return found
 
 
-def _absurd(parts: Way, value: Any) -> str:
-    """What is wrong with a value that no run, picture or terminal could use; mostly nothing."""
-    if isinstance(value, str):
-        if parts[-1] in PROSE:
-            return "must have no control characters" if UNPRINTABLE.search(value) else ""
-        if not value.isprintable() or len(value) > LONGEST_TEXT:
-            return f"must be printable, on one line of at most {LONGEST_TEXT} characters"
-        return "must not be empty" if parts[-1] == "name" and not value.strip() else ""
+def _refuse(data: Any, absurd: Callable[[Way, Any], str]) -> None:
+    """Raises InputError for the first value that no run, picture or terminal could use."""
+    for parts, value in leaves(data):
+        if complaint := absurd(parts, value):
+            shown = [clip(part) if isinstance(part, str) else part for part in parts]
+            raise InputError(f"{dotted(shown)}={brief(value)}: {complaint}")
+
+
+def _absurd_text(parts: Way, value: Any) -> str:
+    """What is wrong with a text or the keys that lead to a value; mostly nothing."""
+    if any(not _short(part) for part in parts):
+        return f"a key must be printable and have at most {LONGEST_TEXT} characters"
+    if not isinstance(value, str):
+        return ""
+    if parts and parts[-1] in PROSE:
+        return "must have no control characters" if UNPRINTABLE.search(value) else ""
+    if not _short(value):
+        return f"must be printable, on one line of at most {LONGEST_TEXT} characters"
+    return "must not be empty" if parts and parts[-1] == "name" and not value.strip() else ""
+
+
+def _short(text: str | int) -> bool:
+    return isinstance(text, int) or (text.isprintable() and len(text) <= LONGEST_TEXT)
+
+
+def _absurd_number(parts: Way, value: Any) -> str:
     large = isinstance(value, int | float) and abs(value) > LARGEST and parts != ("seed",)
     return f"must be at most {LARGEST:g} in size" if large else ""
 
@@ -194,6 +212,8 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
     value = override.value()
     if override.is_add():
         return f"{key} is there already; write {key}=VALUE"
+    if _is_choice(override):  # which is one of those that there are
+        return ""
     try:
         check(put(valid, parts, value))
     except InputError as error:

@@ -1,5 +1,12 @@
 """The one root of all rotctl errors: a single clear line for the user, and an exit code."""
 
+LONGEST = 2000  # characters of a message; the longest list of valid choices has 900
+
+
+def bounded(message: str) -> str:
+    """The message, or its beginning: what it repeats may be a stranger's megabyte."""
+    return message if len(message) <= LONGEST else f"{message[: LONGEST - 3]}..."
+
 
 class RotctlError(Exception):
     """Base of every error rotctl raises on purpose.
@@ -10,6 +17,9 @@ class RotctlError(Exception):
     """
 
     exit_code = 1
+
+    def __init__(self, message: str) -> None:
+        super().__init__(bounded(message))
 
 
 class InputError(RotctlError):

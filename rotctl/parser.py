@@ -6,6 +6,7 @@ from typing import Any, NoReturn
 
 from rotctl import __version__
 from rotctl.commands import clips, logs, runs, studies
+from rotctl.errors import bounded
 from rotctl.wording import one_line
 
 EPILOG = """\
@@ -47,7 +48,7 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: {one_line(message)}; see {self.prog} --help\n")
+        self.exit(2, f"{self.prog}: {bounded(one_line(message))}; see {self.prog} --help\n")
 
 
 def parse(argv: Sequence[str] | None) -> argparse.Namespace:

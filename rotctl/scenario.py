@@ -16,7 +16,7 @@ from rotctl.control import Controller
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
-from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
+from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance, Push
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
@@ -64,7 +64,7 @@ def build(config: Config) -> Scenario:
     control = config.controller
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     model = _varied(config, Variation(config.plant, plant)) if config.plant.differs else known
-    _check(config)
+    _check(config, known)
     behaviour = config.behaviour.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
     controller = Controller(known, control)
@@ -92,14 +92,22 @@ def build(config: Config) -> Scenario:
     )
 
 
-def _check(config: Config) -> None:
-    """Raises InputError where the criteria judge another class of motion."""
+def _check(config: Config, model: Model) -> None:
+    """Raises InputError where criteria judge other motions or bodies, or a push comes too late."""
     rolls = isinstance(config.behaviour, RollingSettings)
     if rolls != (config.criteria.kind == "rolling"):
         wanted = "criteria=rolling" if rolls else "criteria=standing or criteria=orientation"
         raise InputError(
             f"criteria={config.criteria.name} does not judge behaviour={config.behaviour.name}, "
             f"a behaviour of kind {config.behaviour.kind}; choose {wanted}"
+        )
+    for name in getattr(config.criteria, "feet", ()):
+        models.body_id(model.mj, name, "criteria.feet")
+    push = config.disturbance
+    if isinstance(push, Push) and push.time[0] >= config.duration:
+        raise InputError(
+            f"disturbance.time: the push begins at {push.time[0]:g} s at the earliest, "
+            f"when the run of {config.duration:g} s is over"
         )
 
 

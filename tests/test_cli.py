@@ -177,6 +177,28 @@ def test_bad_input_is_one_line_and_exit_code_2(cli, tmp_path, monkeypatch, argum
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize(
+    "arguments", [RUN, ["show"], ["list"], ["render", "x.h5", "--video", "x.mp4"]]
+)
+def test_a_backend_of_opengl_that_there_is_not(cli, tmp_path, monkeypatch, arguments):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MUJOCO_GL", "bogus")
+    code, stdout, stderr = cli(*arguments)
+    assert (code, stdout) == (2, "")
+    assert stderr.startswith(
+        "rotctl: MUJOCO_GL=bogus: no such OpenGL; valid: osmesa, egl, glfw, disable; unset it to"
+    )
+    assert stderr.count("\n") == 1
+    assert os.listdir(tmp_path) == []
+
+
+def test_what_is_not_known_is_not_repeated_at_length(cli):
+    code, _, stderr = cli("run", "--" + "a" * 10**6)
+    assert (code, len(stderr.splitlines())) == (2, 1)
+    assert len(stderr) < 2100
+    assert stderr.endswith("aaa...; see rotctl run --help\n")
+
+
 def test_an_unknown_command_is_answered_with_the_known_ones(cli):
     code, stdout, stderr = cli("rol")
     assert (code, stdout) == (2, "")

@@ -228,6 +228,12 @@ def test_bad_values_are_named_with_what_would_be_valid(plain, key, value, messag
     assert str(caught.value) == f"{key}={message}"
 
 
+def test_a_choice_is_not_blamed_for_another_key():
+    assert complaint("behaviour=stand", "~controller.tasks.jump").startswith(
+        "unknown key 'controller.tasks.jump'; valid keys under controller.tasks: linear, "
+    )
+
+
 def test_a_value_that_a_check_of_our_own_names_is_not_repeated(plain):
     data = copy.deepcopy(plain)
     data["start"]["pitch"] = [1, 0]

@@ -207,6 +207,6 @@ def test_a_bogus_mujoco_gl_is_one_line(log, tmp_path):
         check=True,
     )
     assert done.stdout == (
-        f"cannot render: MUJOCO_GL=bogus gives no working OpenGL; "
-        f"unset it to try {', '.join(gl._CANDIDATES)}; on Debian: apt-get install libosmesa6\n"
+        "MUJOCO_GL=bogus: no such OpenGL; valid: osmesa, egl, glfw, disable; "
+        f"unset it to try {', '.join(gl._CANDIDATES)}\n"
     )

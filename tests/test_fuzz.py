@@ -102,6 +102,14 @@ def removes(path):
     return call
 
 
+def follows_no_link(*_):
+    try:
+        os.open("link", os.O_WRONLY | os.O_CREAT | os.O_NOFOLLOW)
+    except OSError:
+        return 0
+    return 70
+
+
 def crashes(*_):
     os.kill(os.getpid(), signal.SIGUSR1)
 
@@ -131,6 +139,7 @@ def starts(*_):
         (writes("link"), "open outside: {outside}"),
         (removes("../kept"), "os.remove outside: {kept}"),
         (removes("link"), ""),
+        (follows_no_link, ""),
         (says("rotctl: one line"), ""),
         (says(code=0), ""),
     ],

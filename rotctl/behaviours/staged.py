@@ -60,6 +60,8 @@ class TaskSettings:
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
         if bool(self.body) != (self.kind in ("point", "attitude")):
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.body else 'a'} body")
+        if self.point != (0.0, 0.0, 0.0) and self.kind not in ("point", "limits"):
+            raise ValueError(f"a task of kind {self.kind} has no point")
 
 
 @validated(frozen=True, config=STRICT)

@@ -5,6 +5,7 @@ from math import fsum, sqrt
 import mujoco
 import numpy as np
 
+from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
@@ -13,7 +14,11 @@ LEAST_HEIGHT = 0.1  # [m] of a centre of mass over its feet, for the pendulum th
 
 
 def ends(model: Model, state: State, bodies: list[int]) -> list[Point]:
-    """The ends of the solid capsules of these bodies, seen from above [m]."""
+    """The ends of the solid capsules of these bodies, seen from above [m].
+
+    Raises:
+        InputError: there are none.
+    """
     mj, data, found = model.mj, state.data, []
     solid = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
     for geom in np.flatnonzero(solid).tolist():
@@ -21,6 +26,8 @@ def ends(model: Model, state: State, bodies: list[int]) -> list[Point]:
         x, y = data.geom_xpos[geom, :2].tolist()
         dx, dy = (half * data.geom_xmat[geom].reshape(3, 3)[:2, 2]).tolist()
         found += [(x + dx, y + dy), (x - dx, y - dy)]
+    if not found:
+        raise InputError("behaviour: a task is to balance over bodies that cannot stand")
     return found
 
 
@@ -50,6 +57,8 @@ def middle(corners: list[Point]) -> Point:
 def within(corners: list[Point], centre: Point, wish: Point, margin: float) -> Point:
     """`wish`, drawn towards `centre` until it is `margin` [m] inside every edge of the hull."""
     cx, cy = centre
+    if len(corners) < 2:  # a ball
+        return centre
     dx, dy = wish[0] - cx, wish[1] - cy
     share = 1.0
     for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):

@@ -10,7 +10,7 @@ from typing import Annotated, Literal, Protocol
 
 import mujoco
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
@@ -19,6 +19,15 @@ from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, NonNegative, Positive, Range
 
 DISTURBANCE_STREAM = 2  # beside the start's, which is drawn from the seed alone, and the terrain's
+
+
+SHORTEST = 1e-3  # [s] of a push: time counts to 1e-15 of itself
+
+
+def _from_the_start(time: tuple[float, float]) -> tuple[float, float]:
+    if time[0] < 0.0:
+        raise ValueError("must not begin before the run does, at 0 s")
+    return time
 
 
 class Disturbance(Protocol):
@@ -61,9 +70,9 @@ class Push:
     kind: Literal["push"]
     body: str
     impulse: NonNegative
-    duration: Positive
+    duration: Annotated[Positive, Field(ge=SHORTEST)]
     direction: Range
-    time: Range
+    time: Annotated[Range, AfterValidator(_from_the_start)]
     description: str = ""
 
     def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "OnePush":

@@ -229,7 +229,8 @@ def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
         InputError: there is none of that name; `key` names it.
     """
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
-    if number < 1:  # 0 is the world
-        names = ", ".join(mj.body(int(i)).name for i in np.flatnonzero(is_character(mj)))
+    character = is_character(mj)  # and neither the world nor a loose box
+    if number < 0 or not character[number]:
+        names = ", ".join(mj.body(int(i)).name for i in np.flatnonzero(character))
         raise InputError(f"{key} names the unknown body {name!r}; bodies: {names}")
     return int(number)

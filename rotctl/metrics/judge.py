@@ -56,7 +56,7 @@ def judge(
         found, reason = asdict(stood), standing.failure(stood, criteria)
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
-        found, reason = asdict(turned), orientation.failure(turned, criteria)
+        found, reason = asdict(turned), orientation.failure(turned, criteria, steps * period)
     if steps * period < wanted - 1e-6:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:

@@ -102,13 +102,17 @@ def trunk_turn(log: Arrays) -> np.ndarray:
     return np.asarray(np.degrees(angle - begin - whole))
 
 
-def failure(metrics: OrientationMetrics, criteria: OrientationCriteria) -> str:
-    """Why it is no turn to the target; empty if it is one."""
+def failure(metrics: OrientationMetrics, criteria: OrientationCriteria, duration: float) -> str:
+    """Why it is no turn to the target; empty if it is one. `duration` is the run's [s]."""
     m, c = metrics, criteria
+    short = f"turned {m.turned:.0f} deg of {m.target_excursion:.0f}"
+    if abs(m.turned - m.target_excursion) < c.error:
+        short += f", but {duration - m.arrival:.2f} s before the end only"
     rules = (
-        (m.error_end < c.error, f"turned {m.turned:.0f} deg of {m.target_excursion:.0f}"),
+        (m.error_end < c.error, short),
         (m.sat_up < c.sat_up, f"sat up by {m.sat_up:.0f} deg on the way"),
         (m.level_end < c.level, f"lies {m.level_end:.0f} deg off level at the end"),
         (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),
+        (duration > c.rest - 1e-6, f"ends after {duration:.2f} s, is to rest for {c.rest:g}"),
     )
     return next((reason for kept, reason in rules if not kept), "")

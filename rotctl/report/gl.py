@@ -19,8 +19,26 @@ VARIABLE = "MUJOCO_GL"
 HINT = "on Debian: apt-get install libosmesa6"
 # osmesa first: in software a picture has the same bytes with and without a GPU.
 _CANDIDATES = ("osmesa", "egl") if sys.platform == "linux" else ("glfw",)
+# What MuJoCo takes; with any other value its import raises.
+_KNOWN = ("osmesa", "egl", "glfw", "glx", "cgl", "wgl", "enable", "enabled", "on", "true", "1",
+          "disable", "disabled", "off", "false", "0")  # fmt: skip
 _PROBE = "from rotctl.report import gl; gl.try_out({name!r})"
 _PROBE_SECONDS = 60.0  # [s] importing MuJoCo on a busy machine takes some
+
+
+def chosen() -> str:
+    """The user's `MUJOCO_GL`; empty without one.
+
+    Raises:
+        InputError: MuJoCo does not know it, and cannot be imported then.
+    """
+    name = os.environ.get(VARIABLE, "").strip().lower()
+    if name and name not in _KNOWN:
+        raise InputError(
+            f"{VARIABLE}={name[:40]}: no such OpenGL; valid: osmesa, egl, glfw, disable; "
+            f"unset it to try {', '.join(_CANDIDATES)}"
+        )
+    return name
 
 
 @cache
@@ -30,14 +48,13 @@ def backend() -> str:
     Raises:
         InputError: none works.
     """
-    chosen = os.environ.get(VARIABLE, "").strip().lower()
-    if chosen:
-        if not works(chosen):
+    if wanted := chosen():
+        if not works(wanted):
             raise InputError(
-                f"cannot render: {VARIABLE}={chosen} gives no working OpenGL; "
+                f"cannot render: {VARIABLE}={wanted} gives no working OpenGL; "
                 f"unset it to try {', '.join(_CANDIDATES)}; {HINT}"
             )
-        return chosen
+        return wanted
     for name in _CANDIDATES:
         if works(name):
             return name

@@ -30,6 +30,7 @@ def main():
     for name in ("TMPDIR", "MPLCONFIGDIR", "HOME"):
         os.environ[name] = str(base / name)
         (base / name).mkdir()
+    tempfile.tempdir = None  # which has been asked for already
     made = samples.make(base)
     import_all()
     if arguments.only:

@@ -1,7 +1,7 @@
 """An input on the disk and the command that gets it; what else may lie in the place of a file."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 
@@ -13,12 +13,14 @@ class Case:
         simulates: it may compute for as long as it likes, if it can be interrupted.
         conf: the folder of configs; None: our own.
         drawn: rows of a report with pictures.
+        environ: variables of the environment.
     """
 
     argv: list
     simulates: bool = False
     conf: Path | None = None
     drawn: int = 0
+    environ: dict = field(default_factory=dict)
 
 
 OTHERS = ("secret", "victim", "pipe", "folder", "nothing", "empty", "huge", "zero", "self")

@@ -130,24 +130,25 @@ class _Watch:
         if not self.on:
             return
         if event == "open" and arguments[2] & _WRITING:
-            self._look(event, arguments[:1])
+            self._look(event, arguments[:1], linked=not arguments[2] & os.O_NOFOLLOW)
         elif event in _CHANGES:
-            self._look(event, arguments[: _CHANGES[event]])
+            linked = event in ("sqlite3.connect", "os.truncate")
+            self._look(event, arguments[: _CHANGES[event]], linked)
         elif event in ("subprocess.Popen", "os.exec", "os.system", "os.posix_spawn"):
             program = os.fsdecode(arguments[0])
             if Path(program).name.split("-")[0] not in HELPERS:
                 self.seen.append(f"starts {program}")
 
-    def _look(self, event, paths):
+    def _look(self, event, paths, linked):
         self.on = False
         try:
             for path in paths:
                 if isinstance(path, int) or os.fsdecode(path) in ("/dev/null", ":memory:"):
                     continue
                 place = os.path.abspath(os.fsdecode(path))
-                if event in ("open", "sqlite3.connect", "os.truncate"):
+                if linked:
                     place = os.path.realpath(place)
-                else:  # a link is taken away or replaced itself, not what it leads to
+                else:  # of a link itself, not of what it leads to
                     folder, name = os.path.split(place)
                     place = os.path.join(os.path.realpath(folder), name)
                 if not any(os.path.commonpath([place, root]) == root for root in self.allowed):

@@ -31,6 +31,7 @@ def command(case):
         from rotctl.report.site import build
         from rotctl.sweep import cluster, workers
 
+        os.environ.update(case.environ)
         engine, connect = Few(), cluster.connect
         build.MOST_DRAWN = int(case.drawn)
         cluster.PATIENCE = 0.2

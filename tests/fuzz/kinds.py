@@ -15,9 +15,10 @@ KINDS = {
     texts.clip: 6,
     texts.keys: 4,
     texts.capture: 8,
-    texts.conf: 6,
+    texts.conf: 14,
     words.overrides: 12,
     words.options: 8,
+    words.environment: 2,
 }
 # Those of which `make test` gives some: a small part of a second each.
 CHEAP = {

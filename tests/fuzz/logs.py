@@ -35,13 +35,13 @@ HARM = ("gone", "soft", "external", "shape", "type", "group", "empty", "attribut
 
 
 def log_bytes(rng, samples, here):
-    (here / "run.h5").write_bytes(mangled(rng, samples.log.read_bytes()))
+    (here / "run.h5").write_bytes(mangled(rng, rng.choice(samples.logs).read_bytes()))
     return _with_a_log(rng, here)
 
 
 def log_content(rng, samples, here):
     """A log with a right checksum: other arrays, attributes, outcome, config or model."""
-    whole = RunLog.open(samples.log)
+    whole = RunLog.open(rng.choice(samples.logs))
     arrays = {name: whole[name] for name in whole.names if name != MODEL_PATH}
     attributes = {k: v for k, v in whole.attributes.items() if k not in WRITER_ATTRIBUTES}
     model = whole.model_xml
@@ -72,7 +72,7 @@ def log_content(rng, samples, here):
 
 def log_structure(rng, samples, here):
     """A log with objects of HDF5 that do not belong there, or are gone."""
-    shutil.copy(samples.log, here / "run.h5")
+    shutil.copy(rng.choice(samples.logs), here / "run.h5")
     with h5py.File(here / "run.h5", "r+") as file:
         for _ in range(rng.choice((1, 1, 3))):
             name = rng.choice([f"{group}/{leaf}" for group in file for leaf in file[group]])

@@ -8,7 +8,6 @@ from rotctl import listing
 from rotctl.config import load, to_dict
 from rotctl.log import RunLog, write_run
 from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
-from rotctl.plain import dotted, leaves
 
 OVERRIDES = ["seed=range(0,2)", "duration=0.1", "--quiet"]
 SPACE = """\
@@ -53,12 +52,16 @@ def make(folder, whole=True):
 
     sweep = swept(folder / "sweep", *OVERRIDES[:-1])
     (sweep / "experiment-x.yaml").write_text(EXPERIMENT)
-    for log in sweep.glob("*/run.h5"):
+    pushed = ("behaviour=turn_over", "disturbance=push", "disturbance.time=[0,0.05]")
+    swept(folder / "staged", *pushed, "duration=0.1")
+    for log in folder.rglob("run.h5"):
         _without_clock(log)
-    plain = list(leaves(to_dict(load([]))))
+    behaviours = listing.groups()["behaviour"] if whole else ("forward_roll_1", "turn_over")
+    chosen = [[f"behaviour={name}"] for name in behaviours]
+    chosen += [[*chosen[0], f"disturbance={name}"] for name in ("push", "wind")]
     made = SimpleNamespace(
         sweep=sweep,
-        log=min(sweep.glob("*/run.h5")),
+        logs=sorted(folder.rglob("run.h5")),
         manifest=(sweep / "sweep.jsonl").read_text(),
         overrides=OVERRIDES,
         experiment=EXPERIMENT,
@@ -66,8 +69,7 @@ def make(folder, whole=True):
         claims=CLAIMS,
         clip=(listing.conf_dir() / "motion" / "forward_roll.yaml").read_text(),
         keys=(listing.conf_dir() / "motion" / "keys" / "forward_roll.yaml").read_text(),
-        config_keys=[dotted(way) for way, _ in plain],
-        config_values=[json.dumps(value) for _, value in plain],
+        configs=[(overrides, to_dict(load(overrides))) for overrides in chosen],
     )
     if whole:
         made.captures = _captures()

@@ -49,15 +49,23 @@ def capture(rng, samples, here):
 
 def conf(rng, samples, here):
     shutil.copytree(listing.conf_dir(), here / "conf")
-    paths = sorted((here / "conf").rglob("*.yaml"))
-    path = rng.choice([p for p in paths if p.parent.name not in ("motion", "tune", "keys")])
+    groups = [here / "conf", *(here / "conf" / name for name in listing.groups())]
+    path = rng.choice(sorted(rng.choice(groups).glob("*.yaml")))
     _text_file(rng, path, path.read_text(), here)
     command = ["list"]
     if path.parent.name != "conf" and rng.random() < 0.7:
-        plus = "+" if path.parent.name in ("reference",) else ""
-        choice = f"{plus}{path.parent.name}={path.stem}"
-        command = rng.choice((["show", choice], ["run", choice, "duration=0.05", "--out", "o"]))
+        group, name = path.parent.name, path.stem
+        users = [chosen for chosen, data in samples.configs if _uses(data, group, name)]
+        choice = rng.choice(users) if users else []
+        if not any(word.startswith(f"{group}=") for word in choice):
+            choice = [*choice, f"{'+' if group == 'reference' else ''}{group}={name}"]
+        command = rng.choice((["show", *choice], ["run", *choice, "duration=0.05", "--out", "o"]))
     return Case(command, conf=here / "conf", simulates=True)
+
+
+def _uses(config, group, name):
+    """Whether a config is made with this choice of a group."""
+    return group in config and config[group].get("name") == name
 
 
 def _text_file(rng, path, content, here):

@@ -1,0 +1,94 @@
+"""Settings that can be read and mean nothing: one line that names the value and what is valid."""
+
+import copy
+
+import pytest
+
+from rotctl.config import check, composed
+from rotctl.errors import LONGEST, InputError, LogError
+from rotctl.scenario import build
+from rotctl.simulation.episode import Episode
+
+STAND = ["behaviour=stand", "duration=1"]
+PUSHED = [*STAND, "disturbance=push"]
+BODIES = (
+    "pelvis, waist, chest, head, upper_arm_l, forearm_l, upper_arm_r, forearm_r, thigh_l, shin_l, "
+    "foot_l, thigh_r, shin_r, foot_r"
+)
+
+
+def complaint(chosen, changes):
+    """What is said of a config with changes at some places; the run is begun."""
+    data = composed(chosen)
+    for key, value in changes.items():
+        *path, last = key.split(".")
+        inner = data
+        for part in path:
+            inner = inner[int(part)] if isinstance(inner, list) else inner[part]
+        inner[last] = copy.deepcopy(value)
+    with pytest.raises(InputError) as caught:
+        next(iter(Episode(build(check(data)))))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "changes", "message"),
+    [
+        (STAND, {"behaviour.tasks.balance.kind": "jump"},
+         "behaviour.tasks.balance: no kind 'jump'; valid: linear, spin, point, attitude, limits"),
+        (STAND, {"behaviour.tasks.pelvis.point": [0.1, 0.0, 0.0]},
+         "behaviour.tasks.pelvis: a task of kind attitude has no point"),
+        (STAND, {"behaviour.tasks.pelvis.body": "tail"},
+         f"tasks.pelvis.body names the unknown body 'tail'; bodies: {BODIES}"),
+        (STAND, {"behaviour.tasks.balance.aim.law": "jump"},
+         "behaviour.tasks.balance.aim.law=\"jump\": no such law; valid: 'hold', 'upright', "
+         "'ground', 'turn', 'capture', 'lunge'"),
+        (STAND, {"behaviour.tasks.balance.aim.bodies": []},
+         "behaviour: a task is to balance over bodies that cannot stand"),
+        (STAND, {"behaviour.tasks.spin.aim.task": "spin"},
+         "behaviour: the aim lunge is for a task 'spin' that captures"),
+        (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
+        (STAND, {"criteria.feet": ["foot"]},
+         f"criteria.feet names the unknown body 'foot'; bodies: {BODIES}"),
+        (PUSHED, {"disturbance.duration": 1e-300},
+         "disturbance.duration=1e-300: must be greater than or equal to 0.001"),
+        (PUSHED, {"disturbance.time": [-1.0, 1.0]},
+         "disturbance.time: must not begin before the run does, at 0 s"),
+        (PUSHED, {"disturbance.time": [1.0, 2.0]}, "disturbance.time: the push begins at 1 s at "
+         "the earliest, when the run of 1 s is over"),
+        ([*PUSHED, "terrain=obstacles"], {"disturbance.body": "box_0"},
+         f"disturbance.body names the unknown body 'box_0'; bodies: {BODIES}"),
+        (STAND, {"behaviour.tasks.\x1b[31m": {"kind": "limits"}},
+         'behaviour.tasks.\x1b[31m.kind="limits": a key must be printable and have at most 200 '
+         "characters"),
+    ],
+)  # fmt: skip
+def test_it_is_refused(chosen, changes, message):
+    assert complaint(chosen, changes) == message
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["behaviour.tasks.balance.kind", "behaviour.tasks.balance.aim.law", "criteria.kind",
+     "behaviour.stages.0.name", "behaviour.tasks.spin.aim.task", "controller.solver"],
+)  # fmt: skip
+def test_a_message_does_not_repeat_a_megabyte(key):
+    said = complaint(STAND, {key: "a" * 10**6})
+    shown = key.replace(".0.", "[0].")
+    assert said == (
+        f'{shown}="{"a" * 56}...: must be printable, on one line of at most 200 characters'
+    )
+
+
+def test_nor_does_one_of_keys():
+    said = complaint(STAND, {"behaviour.tasks." + "a" * 10**6: {"kind": "limits"}})
+    assert said == (
+        f'behaviour.tasks.{"a" * 57}....kind="limits": a key must be printable and have at most '
+        "200 characters"
+    )
+
+
+@pytest.mark.parametrize("kind", [InputError, LogError])
+def test_no_error_is_longer_than_a_screen(kind):
+    assert str(kind("a" * 10**6)) == "a" * (LONGEST - 3) + "..."
+    assert str(kind("a" * LONGEST)) == "a" * LONGEST
