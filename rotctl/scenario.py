@@ -22,6 +22,7 @@ from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.terrain import FASTEST
 from rotctl.motion import load_clip
+from rotctl.settings import ends
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
@@ -104,9 +105,9 @@ def _check(config: Config, model: Model) -> None:
     for name in getattr(config.criteria, "feet", ()):
         models.body_id(model.mj, name, "criteria.feet")
     push = config.disturbance
-    if isinstance(push, Push) and push.time[0] >= config.duration:
+    if isinstance(push, Push) and ends(push.time)[0] >= config.duration:
         raise InputError(
-            f"disturbance.time: the push begins at {push.time[0]:g} s at the earliest, "
+            f"disturbance.time: the push begins at {ends(push.time)[0]:g} s at the earliest, "
             f"when the run of {config.duration:g} s is over"
         )
 

@@ -21,3 +21,9 @@ Fraction = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0, le=1)]
 Vector = tuple[Finite, Finite, Finite]
 NonNegativeVector = tuple[NonNegative, NonNegative, NonNegative]
 Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]
+Drawn = Finite | Range  # drawn from a range; a number stands for itself
+
+
+def ends(drawn: float | tuple[float, float]) -> tuple[float, float]:
+    """The ends of what is drawn from a range."""
+    return drawn if isinstance(drawn, tuple) else (drawn, drawn)

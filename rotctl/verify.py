@@ -5,6 +5,7 @@ it is seen whether control or physics went another way.
 """
 
 import json
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -96,7 +97,7 @@ def repeat(log: RunLog, progress: Callable[[], object] = lambda: None) -> Repeti
         time=(parted or 0) / rate,
         first=first,
         whole=tuple(whole),
-        physics=_led_to(scenario, log) if asked else None,
+        physics=_led_to(built(config), log) if asked else None,
         differs=_differs(log, scenario),
     )
 
@@ -151,6 +152,7 @@ def _led_to(scenario: Scenario, log: RunLog) -> int:
     mj, stepper, torques = scenario.model.mj, scenario.stepper, log["trajectory/ctrl"]
     states = zip(log["trajectory/qpos"], log["trajectory/qvel"], strict=True)
     period, data = 1.0 / scenario.config.controller.rate, mujoco.MjData(mj)
+    before = [math.nan, *log["trajectory/phase"].tolist()]
     with quiet():
         for row, (qpos, qvel) in enumerate(states):
             if row == 0:
@@ -158,7 +160,7 @@ def _led_to(scenario: Scenario, log: RunLog) -> int:
             stepper.evaluate(data)
             if not (_same(data.qpos, qpos) and _same(data.qvel, qvel)):
                 return row
-            scenario.disturbance.apply(data, period)
+            scenario.disturbance.apply(data, period, before[row])
             stepper.advance(data, torques[row], scenario.observer.read(data).contacts)
     return log.steps
 

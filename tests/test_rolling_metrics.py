@@ -33,6 +33,9 @@ CRITERIA = RollingCriteria(
     heading=30.0,
     lateral_drift=3.0,
     settle=2.0,
+    recovery_time=2.0,
+    recovery_heading=15.0,
+    recovery_progress=0.5,
 )
 GOOD = RollingMetrics(
     duration=20.0,
@@ -56,6 +59,8 @@ GOOD = RollingMetrics(
     ground_force_p99=2000.0,
     ground_force_peak=4000.0,
     airborne=0.0,
+    recovery=0.5,
+    recovered=1.0,
     torque_p99_fraction=0.6,
     solver_failures=0,
 )
@@ -274,7 +279,7 @@ def test_only_steps_without_any_solver_are_failures():
 def test_short_logs(steps):
     found = measure(make_log(steps=steps), CRITERIA, 0.5, PERIOD)
     assert found.duration == pytest.approx(steps * PERIOD)
-    later = ("angular_velocity_mean", "speed_mean", *OF_REVOLUTIONS)
+    later = ("angular_velocity_mean", "speed_mean", "recovery", "recovered", *OF_REVOLUTIONS)
     for name, value in vars(found).items():
         assert np.isfinite(value) != (name in later), name
 

@@ -57,6 +57,10 @@ CASES = {
         ("disturbance=push", "disturbance.time=[0.05,0.2]"),
         r"disturbance\..*|controller\.sees_disturbance",
     ),
+    "push at a phase": Case(
+        ("disturbance=push", "disturbance.time=0", "disturbance.phase=10"),
+        r"disturbance\.phase",
+    ),
     "wind": Case(("disturbance=wind",), r"disturbance\..*"),
     "plant": Case(("plant=randomised",), r"plant\..*"),
     "modified": Case(

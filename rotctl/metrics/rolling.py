@@ -34,6 +34,8 @@ COLUMNS = (
     Column("ground_force_p99", "Ground force, 99th percentile", "N"),
     Column("ground_force_peak", "Ground force, peak", "N"),
     Column("airborne", "Share of the time without a contact", ""),
+    Column("recovery", "Rolling on after the push", "s"),
+    Column("recovered", "Rolled on in time after the push", ""),
 )
 
 
@@ -55,6 +57,8 @@ class RollingCriteria:
         travel: least and most that a revolution covers along the way [m].
         heading: [deg]; lateral_drift: [m].
         settle: [s] at the start left out of mean speeds.
+        recovery_time: in which a push should be overcome [s]: the axis back to within
+            recovery_heading [deg], and recovery_progress [rev] in the stall time from then on.
     """
 
     name: str
@@ -72,6 +76,9 @@ class RollingCriteria:
     heading: Positive
     lateral_drift: Positive
     settle: NonNegative
+    recovery_time: Positive
+    recovery_heading: Positive
+    recovery_progress: Positive
     description: str = ""
 
 
@@ -105,6 +112,9 @@ class RollingMetrics:
         ground_force_p99: 99th percentile of the ground's force, mean over a control step [N].
         ground_force_peak: its largest magnitude in a physics step [N].
         airborne: share of the time without a contact with the ground.
+        recovery: from the end of what acted from outside until it rolls on along the way [s];
+            NaN if it never did, or nothing acted and ended.
+        recovered: 1 if that was in time, 0 if not; NaN where nothing acted and ended.
         torque_p99_fraction: 99th percentile of |torque| / limit over joints and time.
         solver_failures: control steps on which every solver failed.
     """
@@ -130,6 +140,8 @@ class RollingMetrics:
     ground_force_p99: float
     ground_force_peak: float
     airborne: float
+    recovery: float
+    recovered: float
     torque_p99_fraction: float
     solver_failures: int
 
@@ -151,6 +163,8 @@ IN_FILES_ONLY = (
     "penetration",
     "ground_force_p99",
     "ground_force_peak",
+    "recovery",
+    "recovered",
 )
 _ZERO_AT_FIRST = ("duration", "revolutions", "lateral_drift", "longest_stall", "stalled_at")
 _NO_ROWS: dict[str, Any] = {each.name: math.nan for each in fields(RollingMetrics)}
@@ -200,10 +214,37 @@ def measure(
         ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
+        **_recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period),
     )
+
+
+def _recovery(
+    log: Arrays,
+    criteria: RollingCriteria,
+    progress: NDArray[np.float64],
+    axis: NDArray[np.float64],
+    period: float,
+) -> dict[str, Any]:
+    """The members of `RollingMetrics` that are about a push.
+
+    The axis is its mean over a second: a roll sways.
+    """
+    wrench = floats(log, "disturbance/wrench") if "disturbance/wrench" in log else np.zeros((0, 6))
+    acted = np.flatnonzero(wrench.any(axis=1))
+    if not len(acted) or acted[-1] + 1 >= len(progress):
+        return {"recovery": math.nan, "recovered": math.nan}
+    second, ahead = round(1.0 / period), round(criteria.stall_time / period)
+    first, last = int(acted[-1]) + 1, len(progress) - max(second, ahead)
+    for row in range(first, last):
+        x, y, _ = axis[row : row + second].mean(axis=0).tolist()
+        along = abs(math.degrees(math.atan2(-x, y))) < criteria.recovery_heading
+        if along and progress[row + ahead] - progress[row] >= criteria.recovery_progress:
+            taken = (row - first) * period
+            return {"recovery": taken, "recovered": float(taken <= criteria.recovery_time)}
+    return {"recovery": math.nan, "recovered": 0.0}
 
 
 def _worst_revolutions(

@@ -5,6 +5,7 @@ bench, the search and the tests look at them.
 """
 
 from collections.abc import Callable, Iterator
+from math import nan
 from typing import Any, NamedTuple, Protocol
 
 import mujoco
@@ -131,13 +132,13 @@ class Episode:
         parts, data, mark = self._parts, self.data, self._mark
         model, behaviour, controller = parts.model, parts.behaviour, parts.controller
         period = 1.0 / controller.settings.rate
-        memory, blend = None, INITIAL_BLEND  # each is what the step before left
+        memory, blend, phase = None, INITIAL_BLEND, nan  # each is what the step before left
         while True:
             parts.stepper.evaluate(data)
             self.breakdown = parts.stepper.complaint(data)
             if self.breakdown:
                 return
-            outside = parts.disturbance.apply(data, period)
+            outside = parts.disturbance.apply(data, period, phase)
             mark("physics")
             crowd = crowded(model.mj, data)
             truth = state = parts.observer.read(data)
@@ -174,7 +175,7 @@ class Episode:
                 ground_height=height,
                 remark=remark,
             )
-            blend = decision.blend
+            blend, phase = decision.blend, signals.phase
 
 
 def _left(ground: Ground, state: State) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
-from rotctl.report.site import outcomes, panels
+from rotctl.report.site import outcomes, panels, pushes
 from rotctl.report.site.grid import Grid
 from rotctl.report.site.panels import Paper
 
@@ -96,6 +96,19 @@ def charts(found: Grid) -> list[Chart]:
                     f"Heat map over {x} and {y}. {panels.said_of_groups(groups)}",
                     (_WIDTH, 0.5 + 2.7 * -(-len(maps) // 3)),
                     lambda figure, _: panels.heat(figure, maps, x, y),
+                )
+            )
+    if {pushes.DIRECTION, pushes.IMPULSE} <= set(found.axes) and pushes.RECOVERED in runs:
+        pushed = pushes.maps(runs, found.others)
+        if 0 < len(pushed) <= MOST_PANELS:
+            made.append(
+                _chart(
+                    "pushes",
+                    "Runs that roll on after a push, by its direction and its impulse [N s]. "
+                    + pushes.said(pushed),
+                    f"Polar maps of recovery. {pushes.said(pushed)}",
+                    (_WIDTH, 0.5 + 3.2 * -(-len(pushed) // 3)),
+                    lambda figure, _: pushes.draw(figure, pushed),
                 )
             )
     if some and outcomes.failures_of(runs).size:

@@ -1,0 +1,133 @@
+"""Pushes at a phase, who rolls on after one, and the map of it."""
+
+from itertools import islice
+from math import nan, radians, tau
+from xml.etree import ElementTree as Xml
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rotctl.config import load
+from rotctl.mechanics.disturbance import OnePush, PushAtPhase
+from rotctl.metrics.judge import judge
+from rotctl.report.site import pushes
+from rotctl.report.site.charts import charts
+from rotctl.report.site.grid import grid
+from rotctl.results.table import Table
+from rotctl.run import in_memory
+from rotctl.scenario import build
+from rotctl.simulation.episode import Episode
+
+PUSH = ("seed=2001", "disturbance=push", "disturbance.time=1.0")
+
+
+def measured(*overrides):
+    scenario = build(load([*PUSH, *overrides]))
+    buffer, _ = in_memory(scenario)
+    config = scenario.config
+    found = judge(
+        buffer.arrays(), config.criteria, config.behaviour.commanded, 1 / 60, config.duration
+    )
+    return buffer, found.columns
+
+
+# ---------------------------------------------------------------- when
+
+
+@pytest.mark.parametrize("degrees", [0.0, 90.0, 300.0])
+@pytest.mark.parametrize("behaviour", ["forward_roll_1", "backward_roll_1"])
+def test_a_push_begins_as_the_phase_is_passed(degrees, behaviour):
+    """Forward it grows, backward it falls; the step that passes it is the one before."""
+    scenario = build(
+        load([*PUSH, f"behaviour={behaviour}", f"disturbance.phase={degrees}", "duration=6"])
+    )
+    steps = list(islice(Episode(scenario), 360))
+    began = next(i for i, step in enumerate(steps) if step.wrench.any())
+    assert steps[began].state.time >= 1.0 - 1e-9
+    before, after = (steps[i].signals.phase for i in (began - 2, began - 1))
+    places = radians(degrees) + tau * np.arange(-10, 10)
+    assert ((places > min(before, after) - 1e-9) & (places < max(before, after) + 1e-9)).any()
+    earlier = [step.signals.phase for step in steps[60 : began - 1]]
+    assert all(
+        not ((places > min(a, b)) & (places < max(a, b))).any()
+        for a, b in zip(earlier, earlier[1:], strict=False)
+    )
+
+
+def test_a_phase_that_is_never_passed_is_never_pushed():
+    push = PushAtPhase(OnePush(1, np.ones(3), 0.0, 0.1), 1.0)
+    for phase in (nan, 0.5, 0.9, 0.7, 0.99):
+        assert not push._passed(phase)
+        push._last = phase
+    assert push._passed(1.01)
+
+
+def test_a_number_stands_for_itself():
+    at, between = (load([*PUSH, f"disturbance.direction={way}"]) for way in ("30", "[30,30]"))
+    one, other = build(at).disturbance, build(between).disturbance
+    assert np.array_equal(one.force, other.force)
+
+
+# ---------------------------------------------------------------- and then
+
+
+def test_a_light_push_is_overcome_at_once():
+    _, columns = measured("disturbance.impulse=1", "duration=6")
+    assert columns["recovered"] == 1.0
+    assert columns["recovery"] == pytest.approx(0.0, abs=0.5)
+
+
+def test_a_push_that_throws_it_over_is_not_overcome():
+    _, columns = measured("disturbance.impulse=400", "disturbance.direction=90", "duration=6")
+    assert columns["recovered"] == 0.0
+
+
+@pytest.mark.parametrize("disturbance", ["none", "wind"])
+def test_without_a_push_that_ends_nothing_is_overcome(disturbance):
+    scenario = build(load([f"disturbance={disturbance}", "duration=3"]))
+    buffer, _ = in_memory(scenario)
+    config = scenario.config
+    found = judge(buffer.arrays(), config.criteria, config.behaviour.commanded, 1 / 60, 3.0)
+    assert np.isnan(found.columns["recovered"])
+    assert np.isnan(found.columns["recovery"])
+
+
+# ---------------------------------------------------------------- the map
+
+
+def runs(recovers):
+    """Runs of two behaviours over impulses and directions; who recovers is told."""
+    points = pd.MultiIndex.from_product([["a", "b"], [10.0, 20.0, 30.0], [0.0, 90.0, 180.0]])
+    rows = [
+        {"run_id": f"{n}-{seed}", "status": "done", "behaviour": b, "seed": seed}
+        | {pushes.IMPULSE: impulse, pushes.DIRECTION: way, "success": True, "failure_reason": ""}
+        | {"recovered": float(recovers(b, impulse, way, seed)), "code": "c", "log": ""}
+        for n, (b, impulse, way) in enumerate(points.tolist())
+        for seed in range(20)
+    ]
+    keys = ["behaviour", pushes.IMPULSE, pushes.DIRECTION, "seed"]
+    return Table(pd.DataFrame(rows), keys, ["recovered"], [])
+
+
+def test_what_is_withstood_is_the_last_impulse_before_the_first_that_is_not():
+    """`a` falls from 20 on at 90 deg, but would stand 30; `b` loses one of 20, which is 95 %."""
+    table = runs(lambda b, impulse, way, seed: seed > 0 if b == "b" else (impulse, way) != (20, 90))
+    found = pushes.maps(table.rows, ["behaviour"])
+    a, b = (pushes.withstood(shares).to_dict() for shares in found.values())
+    assert a == {0.0: 30.0, 90.0: 10.0, 180.0: 30.0}
+    assert b == {0.0: 30.0, 90.0: 30.0, 180.0: 30.0}
+    assert pushes.said(found).startswith(
+        "95 % recover up to, a: 10 N s in the worst direction (90\u00b0), 30 in"
+    )
+
+
+def test_nothing_is_withstood_where_the_least_is_too_much():
+    found = pushes.maps(runs(lambda *_: False).rows, ["behaviour"])
+    assert [pushes.withstood(shares).max() for shares in found.values()] == [0.0, 0.0]
+
+
+def test_the_map_is_among_the_charts_of_a_sweep():
+    (chart,) = [c for c in charts(grid(runs(lambda *_: True))) if c.name == "pushes"]
+    assert Xml.fromstring(chart.light).tag.endswith("svg")
+    assert "30 N s in the worst direction" in chart.alt
