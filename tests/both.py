@@ -44,5 +44,5 @@ class Both:
 def along(scenario, steps):
     """What both say along an episode that the reference drives."""
     both = Both(scenario.model, scenario.controller.settings)
-    for _ in islice(Episode(replace(scenario, controller=both)), steps):
+    for _ in islice(Episode(replace(scenario, controller=both, observer=both)), steps):
         yield both.asked

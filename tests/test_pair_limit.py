@@ -1,6 +1,7 @@
 """No pair of geoms comes near the contacts that the engine keeps; the bound against brute force."""
 
 import copy
+from types import SimpleNamespace
 
 import mujoco
 import numpy as np
@@ -10,10 +11,13 @@ from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import pair_limit
+from rotctl.mechanics.contacts import read_contacts
 from rotctl.mechanics.pair_limit import LIMIT, check, crowded, triangles
 from rotctl.mechanics.terrain import uneven
 from rotctl.run import LOG_NAME, run
 from rotctl.scenario import build
+from rotctl.simulation.lockstep import LockstepStepper
+from rotctl.simulation.stepping import MujocoStepper
 
 LYING = """
 <mujoco>
@@ -86,6 +90,28 @@ def test_a_full_pair_is_named():
     mujoco.mj_forward(mj, data)
     assert 0 < data.ncon < LIMIT
     assert crowded(mj, data) == ""
+
+
+@pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
+def test_every_physics_step_of_a_control_step_is_looked_at(physics):
+    """A log in the air at the begin of the control step, that lies on a fine field in its midst."""
+    scenario = build(load([f"physics={physics}", "physics.substeps=8", "controller.rate=10"]))
+    mj = lying(0.04, 0.8, 0.04)
+    mj.opt.timestep = 0.0125
+    fine = SimpleNamespace(mj=mj)
+    settings = scenario.config.physics
+    stepper = LockstepStepper(fine, settings) if physics == "lockstep" else MujocoStepper(fine, 8)
+    data = mujoco.MjData(mj)
+    data.qpos[2], data.qvel[2] = 0.3, -4.0
+    stepper.evaluate(data)
+    assert data.ncon == 0
+    none = read_contacts(mj, data)
+    stepper.advance(data, np.zeros(0), none)
+    assert stepper.remark().startswith("ground with log: 50 contacts, all that MuJoCo keeps")
+    data.qpos[2], data.qvel[2] = 9.0, 0.0
+    stepper.evaluate(data)
+    stepper.advance(data, np.zeros(0), none)
+    assert stepper.remark() == ""
 
 
 def test_the_log_tells_of_a_full_pair(tmp_path, monkeypatch):

@@ -113,6 +113,21 @@ def test_a_prediction_is_the_state_in_which_the_torque_acts(delay):
         assert seen.state.velocity == pytest.approx(later.truth.velocity, abs=1e-3)
 
 
+def test_a_prediction_that_breaks_down_is_told_and_not_used():
+    """Control saw joints that move at up to 300 rad/s; what is simulated goes on."""
+    scenario = made("plant.delay=2", "plant.predicted=true", "plant.rate_noise=100", "duration=0.5")
+    buffer, _ = in_memory(scenario)
+    told = [t for t, text in buffer.events if text.startswith("the prediction broke down")]
+    assert told
+    assert min(told) < buffer.trajectory.time[-1] - 0.1
+
+
+@pytest.mark.parametrize("key", ["angle_noise", "rate_noise", "velocity_noise"])
+def test_nobody_sees_that_badly(key):
+    with pytest.raises(InputError, match=f"plant.{key}=1000000.0: must be less than or equal to"):
+        load([f"plant.{key}=1e6"])
+
+
 def test_a_prediction_without_a_delay_is_refused():
     with pytest.raises(InputError, match="predicted is about a delay, and there is none"):
         load(["plant.predicted=true"])

@@ -13,6 +13,7 @@ from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
+from rotctl.quiet import quiet
 from rotctl.rotations import Array, advance
 from rotctl.settings import STRICT, NonNegative, Range
 
@@ -43,9 +44,9 @@ class PlantSettings:
     friction: Range
     delay: Annotated[int, Strict(), Field(ge=0, le=100)]
     predicted: Annotated[bool, Strict()]
-    angle_noise: NonNegative
-    rate_noise: NonNegative
-    velocity_noise: NonNegative
+    angle_noise: Annotated[NonNegative, Field(le=1.0)]
+    rate_noise: Annotated[NonNegative, Field(le=100.0)]
+    velocity_noise: Annotated[NonNegative, Field(le=100.0)]
     description: str = ""
 
     def __post_init__(self) -> None:
@@ -115,6 +116,7 @@ class Senses:
 
     Attributes:
         exact: whether that is just what there is.
+        remark: what the log should tell of the last look; mostly empty.
     """
 
     def __init__(
@@ -128,7 +130,7 @@ class Senses:
     ) -> None:
         """Control knows `known`, while `plant` is simulated in so many steps a control period."""
         self._known, self._settings, self._generator = known.mj, settings, generator
-        self._motors, self._substeps = motors, substeps
+        self._motors, self._substeps, self.remark = motors, substeps, ""
         self.exact = known is plant and not settings.noisy and not settings.predicted
         self._seen = None if self.exact else mujoco.MjData(known.mj)
 
@@ -143,12 +145,24 @@ class Senses:
         seen.xfrc_applied[:] = data.xfrc_applied
         if settings.noisy:
             self._blur(seen)
-        for torque in self._motors.pending if settings.predicted else ():
-            seen.ctrl[:] = torque
-            mujoco.mj_step(mj, seen, self._substeps)
+        self.remark = self._predict(seen) if settings.predicted else ""
         seen.time = data.time
         mujoco.mj_step1(mj, seen)
         return seen
+
+    def _predict(self, seen: mujoco.MjData) -> str:
+        """Go on to where the coming torque will act; stay, and say so, where that breaks down."""
+        mj, position, velocity = self._known, seen.qpos.copy(), seen.qvel.copy()
+        wrench = seen.xfrc_applied.copy()
+        with quiet() as heard:  # what is simulated is as well as ever
+            for torque in self._motors.pending:
+                seen.ctrl[:] = torque
+                mujoco.mj_step(mj, seen, self._substeps)
+        if not heard and not any(seen.warning.number.tolist()):
+            return ""
+        mujoco.mj_resetData(mj, seen)  # as MuJoCo has done, to a posture that is not ours
+        seen.qpos[:], seen.qvel[:], seen.xfrc_applied[:] = position, velocity, wrench
+        return "the prediction broke down: control saw the present state"
 
     def _blur(self, seen: mujoco.MjData) -> None:
         nu, settings, normal = self._known.nu, self._settings, self._generator.normal

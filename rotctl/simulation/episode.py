@@ -14,7 +14,6 @@ from rotctl.behaviours.behaviour import Behaviour, Signals
 from rotctl.control import Command, Controller, Decision
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.pair_limit import crowded
 from rotctl.mechanics.plant import Motors, Senses
 from rotctl.mechanics.state import State
 from rotctl.mechanics.terrain import Ground
@@ -140,7 +139,6 @@ class Episode:
                 return
             outside = parts.disturbance.apply(data, period, phase)
             mark("physics")
-            crowd = crowded(model.mj, data)
             truth = state = parts.observer.read(data)
             if not parts.senses.exact:
                 state = controller.read(parts.senses.look(data))
@@ -160,7 +158,7 @@ class Episode:
             forces = parts.stepper.advance(data, torque, state.contacts)
             x, y, _ = truth.momentum.com.tolist()
             height = model.ground.height(x, y)
-            remark = "; ".join(filter(None, (crowd, parts.stepper.remark())))
+            remark = "; ".join(filter(None, (parts.senses.remark, parts.stepper.remark())))
             mark("physics")
             yield Moment(
                 truth=truth,

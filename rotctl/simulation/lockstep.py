@@ -19,6 +19,7 @@ import numpy as np
 from rotctl.linear import product
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
+from rotctl.mechanics.pair_limit import crowded
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.native.library import NOT_BUILT, library
 from rotctl.rotations import Array
@@ -53,6 +54,7 @@ class LockstepStepper:
         missing = "the compiled contact solver " + NOT_BUILT.format(slower="much")
         self.notice = missing if wanted and not compiled else ""
         self.solved: list[Impulses] = []
+        self._crowd = ""
 
     def evaluate(self, data: mujoco.MjData) -> None:
         """Positions, contacts, rows and bias."""
@@ -63,21 +65,21 @@ class LockstepStepper:
         data.ctrl[:] = torque
         self.solved.clear()
         self._forces.begin(contacts)
+        self._crowd = ""
         self._step(data)
-        self._forces.add(data)
         for _ in range(self._settings.substeps - 1):
             self.evaluate(data)
             self._step(data)
-            self._forces.add(data)
         self._periods += 1
         return self._forces.result()
 
     def remark(self) -> str:
-        """That the solver stopped far from a solution, if it did."""
+        """Of a crowded pair of geoms, and that the solver stopped far from a solution."""
         worst = max((impulses.residual for impulses in self.solved), default=0.0)
         if worst <= self._settings.alarm:
-            return ""
-        return f"contacts not solved after {self._settings.sweeps} sweeps: off by {worst:.2g} m/s"
+            return self._crowd
+        far = f"contacts not solved after {self._settings.sweeps} sweeps: off by {worst:.2g} m/s"
+        return "; ".join(filter(None, (self._crowd, far)))
 
     def complaint(self, data: mujoco.MjData) -> str:
         """See `trouble`."""
@@ -102,6 +104,8 @@ class LockstepStepper:
         data.qvel[:] = velocity
         mujoco.mj_integratePos(mj, data.qpos, data.qvel, h)
         data.time += h
+        self._forces.add(data)
+        self._crowd = self._crowd or crowded(mj, data)
 
     def _rows(self, data: mujoco.MjData, jacobian: Array, solved: Array, free: Array) -> Rows:
         n, contact = data.nefc, data.contact

@@ -8,6 +8,7 @@ import numpy as np
 
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
+from rotctl.mechanics.pair_limit import crowded
 from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces, ground_forces
 
@@ -63,6 +64,7 @@ class MujocoStepper:
         self._period = substeps * model.mj.opt.timestep
         self._forces = ground_forces(model.mj)
         self._steps = 0
+        self._crowd = ""
 
     def evaluate(self, data: mujoco.MjData) -> None:
         """First half of a step, which needs no torque."""
@@ -72,21 +74,27 @@ class MujocoStepper:
         """Second half of the step begun by `evaluate`, then the other substeps."""
         data.ctrl[:] = torque
         self._forces.begin(contacts)
+        self._crowd = ""
         mujoco.mj_step2(self._mj, data)
-        self._forces.add(data)
+        self._look(data)
         for _ in range(self._substeps - 1):
             mujoco.mj_step(self._mj, data)
-            self._forces.add(data)
+            self._look(data)
         self._steps += 1
         return self._forces.result()
 
     def remark(self) -> str:
-        """Nothing: MuJoCo's solver falls short in silence."""
-        return ""
+        """Of a pair of geoms with all contacts that it can have; the solver is silent."""
+        return self._crowd
 
     def complaint(self, data: mujoco.MjData) -> str:
         """See `trouble`."""
         return trouble(data, self._steps, self._period)
+
+    def _look(self, data: mujoco.MjData) -> None:
+        """At the contacts of a physics step."""
+        self._forces.add(data)
+        self._crowd = self._crowd or crowded(self._mj, data)
 
 
 def trouble(data: mujoco.MjData, periods: int, period: float) -> str:

@@ -58,7 +58,8 @@ def make(folder, whole=True):
         _without_clock(log)
     behaviours = listing.groups()["behaviour"] if whole else ("forward_roll_1", "turn_over")
     chosen = [[f"behaviour={name}"] for name in behaviours]
-    chosen += [[*chosen[0], f"disturbance={name}"] for name in ("push", "wind")]
+    more = ("disturbance=push", "disturbance=wind", "plant=randomised")
+    chosen += [[*chosen[0], word] for word in more]
     made = SimpleNamespace(
         sweep=sweep,
         logs=sorted(folder.rglob("run.h5")),
