@@ -4,7 +4,7 @@ An aim fills a task's target, velocity and acceleration at one instant; which ki
 serves stands in its docstring.
 """
 
-from math import sqrt
+from math import atan2, radians, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
@@ -12,14 +12,15 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import solve
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model, body_ids
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.rotations import about_up, advance, dot
+from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -60,6 +61,43 @@ class Upright:
         w, _, _, z = scene.state.data.xquat[int(task["body"])].tolist()
         length = sqrt(w * w + z * z) or 1.0
         task["target"] = [w / length, 0.0, 0.0, z / length]
+
+
+@validated(frozen=True, config=STRICT)
+class Bow:
+    """A body faces the way, and bows to it: attitude.
+
+    Attributes:
+        angle: from upright about left [deg].
+    """
+
+    law: Literal["bow"]
+    angle: Finite
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        forward, left, _ = scene.axes
+        facing = about_up(atan2(float(forward[1]), float(forward[0])))
+        task["target"] = advance(facing, radians(self.angle) * left)
+
+
+@validated(frozen=True, config=STRICT)
+class Pose:
+    """A body's joints as the stage's pose has them, and as fast as it has them move: joints."""
+
+    law: Literal["pose"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set target and velocity."""
+        first, count = scene.model.hinges(int(task["body"]))
+        task["target"][:count] = scene.pose[first : first + count]
+        task["velocity"][:count] = scene.speed[first : first + count]
 
 
 @validated(frozen=True, config=STRICT)
@@ -205,7 +243,10 @@ class Lunge:
         task["acceleration"] = solve(momentum.inertia, np.array([-weight * ey, weight * ex, 0.0]))
 
 
-Aim = Annotated[Hold | Upright | Ground | Turn | Capture | Lunge, Field(discriminator="law")]
+Aim = Annotated[
+    Hold | Upright | Bow | Pose | Ground | Turn | Capture | Lunge | Lean | Launch | Whirl,
+    Field(discriminator="law"),
+]
 
 
 def _missing(scene: Scene, angle: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol, TypeVar
 
 from rotctl.control import Command, ControllerSettings
-from rotctl.control.settings import PoseGains, TaskGains
+from rotctl.control.settings import ContactGains, PoseGains, TaskGains
 from rotctl.errors import InputError
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
@@ -104,3 +104,17 @@ def pose_gains_of(control: ControllerSettings, name: str) -> PoseGains:
             f"it has: {', '.join(control.poses) or 'none'}"
         )
     return control.poses[name] if name else control.pose
+
+
+def contact_gains_of(control: ControllerSettings, name: str) -> ContactGains:
+    """The controller's gains of contacts of that name; its usual ones, if empty.
+
+    Raises:
+        InputError: it has none of that name.
+    """
+    if name and name not in control.contacts:
+        raise InputError(
+            f"controller={control.name} has no gains of contacts {name!r}; "
+            f"it has: {', '.join(control.contacts) or 'none'}"
+        )
+    return control.contacts[name] if name else control.contact

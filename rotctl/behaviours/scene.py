@@ -38,6 +38,8 @@ class Scene:
         begin: of the stage.
         first: AE and phase at the start of the run.
         aims: of the stage's tasks, by the name of the task.
+        laws: of the behaviour's poses, by the name of the stage.
+        pose: (nu,) that the stage has [rad]; speed: (nu,) at which it moves [rad/s].
         target: in-plane excursion that the behaviour is to reach since its start [rad].
         turned: in-plane excursion since its start [rad].
         airborne: how long nothing has touched the ground [s].
@@ -52,6 +54,9 @@ class Scene:
     begin: Begin
     first: Excursion
     aims: Mapping[str, object]
+    laws: Mapping[str, object]
+    pose: Array
+    speed: Array
     target: float
     turned: float
     airborne: float

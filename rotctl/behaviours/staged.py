@@ -14,14 +14,22 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours.aims import Aim
-from rotctl.behaviours.behaviour import Placement, Signals, gains_of, pose_gains_of
-from rotctl.behaviours.facing import frame_of
+from rotctl.behaviours.aims import Aim, Pose
+from rotctl.behaviours.behaviour import (
+    Placement,
+    Signals,
+    contact_gains_of,
+    gains_of,
+    pose_gains_of,
+)
+from rotctl.behaviours.facing import FACING, frame_of
+from rotctl.behaviours.flight import Aloft, Flight, FlightSettings
+from rotctl.behaviours.posing import OverPhase, PoseLaw, RiseSettings
 from rotctl.behaviours.scene import Begin, Scene
 from rotctl.behaviours.until import Until
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import KINDS, kind
-from rotctl.control.settings import PoseGains
+from rotctl.control.settings import ContactGains, PoseGains
 from rotctl.control.supervisor import SupervisorName
 from rotctl.control.task import TASK, Tasks, task
 from rotctl.mechanics import excursion
@@ -58,8 +66,10 @@ class TaskSettings:
             raise ValueError(f"no kind {self.kind!r}; valid: {', '.join(KINDS)}")
         if (self.aim is None) != (self.kind == "limits"):
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
-        if bool(self.body) != (self.kind in ("point", "attitude")):
+        if bool(self.body) != (self.kind in ("point", "attitude", "joints")):
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.body else 'a'} body")
+        if (self.kind == "joints") != isinstance(self.aim, Pose):
+            raise ValueError("the aim pose is for tasks of kind joints, which have no other")
         if self.point != (0.0, 0.0, 0.0) and self.kind not in ("point", "limits"):
             raise ValueError(f"a task of kind {self.kind} has no point")
 
@@ -69,23 +79,36 @@ class Stage:
     """One part of a behaviour.
 
     Attributes:
-        poses: key poses over the phase.
+        poses: key poses over the phase; or in their place
+        rise: poses over the height of the centre of mass, or
+        flight: poses that bring the body to its landing, see `rotctl.behaviours.flight`.
         tasks: by name, beside those of every stage.
         until: what ends it; nothing for the last stage alone.
         supervisor: in place of the controller's.
         pose: name of the controller's pose gains in place of its usual ones.
+        contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
         held_out: bodies whose contacts control may not use.
     """
 
     name: str
-    poses: Poses
+    poses: Poses | None = None
+    rise: RiseSettings | None = None
+    flight: FlightSettings | None = None
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     until: Until | None = None
     supervisor: SupervisorName | None = None
     pose: str = ""
+    contact: str = ""
     lead: NonNegative = 0.0
     held_out: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        given = [law for law in (self.poses, self.rise, self.flight) if law is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"the stage {self.name!r} must have one of poses, rise and flight, not {len(given)}"
+            )
 
 
 @validated(frozen=True, config=STRICT)
@@ -110,6 +133,8 @@ class StagedSettings:
     description: str = ""
 
     def __post_init__(self) -> None:
+        if self.stages[0].poses is None:
+            raise ValueError("the first stage must have poses: a run starts in them")
         for stage in self.stages[:-1]:
             if stage.until is None:
                 raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
@@ -136,6 +161,7 @@ class StagedMemory:
         first: excursion at the start of the run.
         excursion: now.
         airborne, still: for how long [s].
+        aloft: of the present stage's flight.
     """
 
     stage: int
@@ -144,6 +170,7 @@ class StagedMemory:
     excursion: Excursion
     airborne: float = 0.0
     still: float = 0.0
+    aloft: Aloft | None = None
 
 
 @dataclass(frozen=True)
@@ -158,6 +185,7 @@ class _Part:
     slots: list[int]
     held_out: NDArray[np.bool_]
     pose: PoseGains
+    contact: ContactGains
     aims: dict[str, Aim]
     weight: Array
 
@@ -189,11 +217,10 @@ class Staged:
             if stage.until:
                 stage.until.check(model)
         self.tasks = tuple(found)
+        self._nothing = np.zeros(len(model.joint_names))
         self._parts = [self._part(stage) for stage in settings.stages]
-        self._poses = [
-            make_pose_pair(model, stage.poses, f"behaviour.stages.{stage.name}.poses")
-            for stage in settings.stages
-        ]
+        self._poses = [self._law(stage) for stage in settings.stages]
+        self._laws = {s.name: law for s, law in zip(settings.stages, self._poses, strict=True)}
 
     def _part(self, stage: Stage) -> _Part:
         model = self._model
@@ -218,12 +245,24 @@ class Staged:
         tasks = np.concatenate([np.zeros(0, TASK), *rows])
         aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
         pose = pose_gains_of(self._control, stage.pose)
-        return _Part(tasks, fillers, slots, held_out, pose, aims, tasks["weight"].copy())
+        contact = contact_gains_of(self._control, stage.contact)
+        return _Part(tasks, fillers, slots, held_out, pose, contact, aims, tasks["weight"].copy())
+
+    def _law(self, stage: Stage) -> PoseLaw:
+        key = f"behaviour.stages.{stage.name}"
+        if stage.flight:
+            axis = FACING[self._settings.roll_about].trunk_axis
+            return Flight(stage.flight, self._model, axis, self._target, f"{key}.flight")
+        if stage.rise:
+            return stage.rise.make(self._model, f"{key}.rise")
+        assert stage.poses  # one of the three is there
+        return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] about left."""
-        tilt = pitch * self.axes[1]
-        return Placement(advance(self._frame.orientation, tilt), self._poses[0].start(pitch))
+        tilt, first = pitch * self.axes[1], self._poses[0]
+        assert isinstance(first, OverPhase)  # as the settings ask for
+        return Placement(advance(self._frame.orientation, tilt), first.pair.start(pitch))
 
     def begin(self, pitch: float, state: State) -> StagedMemory:
         """Memory at the start."""
@@ -252,26 +291,29 @@ class Staged:
         )
         until = self._settings.stages[memory.stage].until
         last = memory.stage + 1 == len(self._parts)
-        if last or until is None or not until.met(self._scene(memory, state)):
-            return memory
-        return replace(memory, stage=memory.stage + 1, begin=_begin(state, now))
+        if not last and until is not None and until.met(self._scene(memory, state)):
+            memory = replace(memory, stage=memory.stage + 1, begin=_begin(state, now), aloft=None)
+        law = self._poses[memory.stage]
+        aloft = law.advance(memory.aloft, self._scene(memory, state), self._period)
+        return replace(memory, aloft=aloft)
 
     def command(self, memory: StagedMemory, state: State) -> Command:
         """What the present stage wants at this instant."""
         part, stage = self._parts[memory.stage], self._settings.stages[memory.stage]
         scene = self._scene(memory, state)
+        poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
+        scene = replace(scene, pose=poses[0], speed=speeds[0])
         part.tasks["weight"] = part.weight
         for i, kind_name, aim in part.fillers:
             aim.fill(part.tasks[i], kind_name, scene)
-        ahead = min(max(scene.target - scene.turned, -stage.lead), stage.lead)
-        pose_a, pose_b = self._poses[memory.stage].at(memory.excursion.phase + ahead)
+        pose_a, pose_b = poses + _lag(part.pose) * speeds
         return Command(
             tasks=part.tasks,
             pose_a=pose_a,
             pose_b=pose_b,
             forward=self.axes[0],
             pose=part.pose,
-            contact=self._control.contact,
+            contact=part.contact,
             supervisor=stage.supervisor or self._control.supervisor,
             thresholds=self._control.thresholds,
             held_out=part.held_out,
@@ -293,6 +335,9 @@ class Staged:
             begin=memory.begin,
             first=memory.first,
             aims=self._parts[memory.stage].aims,
+            laws=self._laws,
+            pose=self._nothing,
+            speed=self._nothing,
             target=self._target,
             turned=memory.excursion.phase - memory.first.phase,
             airborne=memory.airborne,
@@ -308,6 +353,11 @@ def _names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
     """A task's names: one for each side where its body stands for both."""
     both = wanted.body and len(body_ids(model.mj, [wanted.body], f"tasks.{name}.body")) == 2
     return [name + side for side in SIDES] if both else [name]
+
+
+def _lag(pose: PoseGains) -> float:
+    """How far a pose must be ahead of a motion, for its damper not to brake that [s]."""
+    return pose.damping / pose.stiffness + pose.horizon if pose.stiffness else 0.0
 
 
 def _begin(state: State, now: Excursion) -> Begin:

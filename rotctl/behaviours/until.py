@@ -1,15 +1,16 @@
 """When a stage ends: a small closed set of conditions on the state."""
 
-from math import radians
+from math import atan2, radians
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.launch import leaning
 from rotctl.behaviours.scene import Scene
 from rotctl.mechanics.model import Model, body_ids
-from rotctl.settings import STRICT, Finite, NonNegative
+from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -113,4 +114,73 @@ class Still:
         return scene.still > 0.0 and scene.still >= self.seconds
 
 
-Until = Annotated[After | Turned | Near | Touches | Airborne | Still, Field(discriminator="kind")]
+@validated(frozen=True, config=STRICT)
+class Lands:
+    """As `touches`, on the way down: feet that leave the ground in their time do not count."""
+
+    kind: Literal["lands"]
+    bodies: tuple[str, ...]
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        falls = float(scene.state.momentum.com_velocity[2]) < 0.0
+        return falls and Touches("touches", self.bodies).met(scene)
+
+
+@validated(frozen=True, config=STRICT)
+class Tilted:
+    """The centre of mass leans so far over the middle of these bodies, to forward [deg]."""
+
+    kind: Literal["tilted"]
+    bodies: tuple[str, ...]
+    angle: Finite
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        ahead, height = leaning(scene, self.bodies)
+        tilt = atan2(ahead, height)
+        goal = radians(self.angle)
+        return tilt >= goal if goal >= 0.0 else tilt <= goal
+
+
+@validated(frozen=True, config=STRICT)
+class Launched:
+    """It rises at a speed [m/s], has come to a height [m], or its legs are straight [rad].
+
+    Attributes:
+        knee: joints that count as straight below an angle [rad], by name; the mean counts.
+    """
+
+    kind: Literal["launched"]
+    up: Positive
+    height: Positive
+    knee: Positive
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        state, model = scene.state, scene.model
+        x, y, z = state.momentum.com.tolist()
+        knees = state.position[model.angles][model.motors("knee", "behaviour.stages.until.knee")]
+        return (
+            float(state.momentum.com_velocity[2]) >= self.up
+            or z - model.ground.height(x, y) >= self.height
+            or float(knees.sum()) / len(knees) < self.knee
+            or scene.airborne > 0.012
+        )
+
+
+Until = Annotated[
+    After | Turned | Near | Touches | Airborne | Still | Lands | Tilted | Launched,
+    Field(discriminator="kind"),
+]

@@ -139,6 +139,23 @@ def limits(task: Tasks, model: Model, state: State) -> Rows:
     return Rows(rows, wanted, weight, error)
 
 
+@_kind(momentum=False)
+def joints(task: Tasks, model: Model, state: State) -> Rows:
+    """A body's own hinges, in their order. Target their angles [rad]; weight 1/(rad/s2)2.
+
+    Nothing is asked of the root, which has none. Gains are in their order, too.
+    """
+    mj, (first, count) = model.mj, model.hinges(int(task["body"]))
+    angle, dof = first + model.angles.start, first + model.joints.start
+    rows = np.zeros((count, mj.nv))
+    rows[np.arange(count), np.arange(dof, dof + count)] = 1.0
+    error = np.zeros(3)
+    error[:count] = task["target"][:count] - state.position[angle : angle + count]
+    slip = task["velocity"][:count] - state.velocity[dof : dof + count]
+    wanted = task["acceleration"][:count] + task["stiffness"][:count] * error[:count]
+    return Rows(rows, wanted + task["damping"][:count] * slip, task["weight"][:count], error)
+
+
 def _motion(task: Tasks, state: State, J: Array, J_dot: Array, missing: Array) -> Rows:
     """Rows of a Jacobian (3, nv) along the axes; `missing` (3,) to the target, world."""
     wanted, error = _wish(task, missing, product(J, state.velocity))

@@ -78,7 +78,7 @@ class ControllerSettings:
         merging: which contacts count as one.
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
         sees_disturbance: whether control knows of the forces from outside.
-        poses: further pose gains, by the name that a stage asks for.
+        poses, contacts: further gains of poses and contacts, by the name that a stage asks for.
         tasks: gains by the name of a behaviour's task, or by the name that a task asks for.
     """
 
@@ -96,4 +96,5 @@ class ControllerSettings:
     pose: PoseGains
     tasks: dict[str, TaskGains]
     poses: dict[str, PoseGains] = field(default_factory=dict)
+    contacts: dict[str, ContactGains] = field(default_factory=dict)
     description: str = ""

@@ -68,6 +68,11 @@ class Model:
     look_ahead: float
     ground: Ground
 
+    def hinges(self, body: int) -> tuple[int, int]:
+        """First motor of a body's own joints, and how many it has; none of the root."""
+        first, count = int(self.mj.body_dofadr[body]), int(self.mj.body_dofnum[body])
+        return (first - self.joints.start, count) if body > ROOT_BODY else (0, 0)
+
     def motors(self, joint: str, key: str) -> list[int]:
         """Motors of a joint's name; one without a side stands for both.
 

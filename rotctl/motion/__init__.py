@@ -1,7 +1,7 @@
 """Poses to track: key poses or a reference clip over the phase of a cycle."""
 
 from rotctl.motion.clip import Clip, RollAbout, load_clip
-from rotctl.motion.pose_pair import Angle, PosePair, Poses, make_pose_pair
+from rotctl.motion.pose_pair import Angle, PosePair, Poses, Turn, make_pose, make_pose_pair
 from rotctl.motion.reference import ReferencePair, ReferenceSettings, make_reference_pair
 
 __all__ = [
@@ -12,7 +12,9 @@ __all__ = [
     "ReferencePair",
     "ReferenceSettings",
     "RollAbout",
+    "Turn",
     "load_clip",
+    "make_pose",
     "make_pose_pair",
     "make_reference_pair",
 ]

@@ -71,6 +71,20 @@ def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> 
     )
 
 
+def make_pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
+    """One constant pose (nu,) [rad] by joint name, within the joints' ranges.
+
+    Raises:
+        InputError: a name is no joint of the model.
+    """
+    pose = np.zeros(len(model.joint_names))
+    for name, angle in angles.items():
+        pose[model.motors(name, key)] = angle
+    return np.asarray(
+        np.minimum(np.maximum(pose, model.joint_range[:, 0]), model.joint_range[:, 1])
+    )
+
+
 def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
     columns = np.zeros((3, len(model.joint_names)))
     for name, angle in pose.items():

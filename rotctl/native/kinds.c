@@ -108,3 +108,21 @@ int rotctl_kind_limits(const Self* s, const mjData* d, const Reading* r, const T
   error[0] = k, error[2] = 0;
   return k;
 }
+
+int rotctl_kind_joints(const Self* s, const mjData* d, const Reading* r, const Task* t, double* rows,
+                       double* wanted, double* weight, double* error) {
+  (void)r;
+  int first = s->m->body_jntadr[t->body], count = s->m->body_jntnum[t->body];
+  error[0] = error[1] = error[2] = 0;
+  if (t->body == 1 || count == 0) return 0;
+  int angle = s->m->jnt_qposadr[first], dof = s->m->jnt_dofadr[first];
+  memset(rows, 0, sizeof(double) * count * s->nv);
+  for (int i = 0; i < count; i++) {
+    rows[i * s->nv + dof + i] = 1;
+    error[i] = t->target[i] - d->qpos[angle + i];
+    wanted[i] = t->acceleration[i] + t->stiffness[i] * error[i] +
+                t->damping[i] * (t->velocity[i] - d->qvel[dof + i]);
+    weight[i] = t->weight[i];
+  }
+  return count;
+}

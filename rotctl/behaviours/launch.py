@@ -1,0 +1,188 @@
+"""From standing into the air: lean, and a push that gives height, way and angular momentum at once.
+
+The launch knows what it is for. Of the flight that follows it takes the time in the air, from
+ballistics, and asks for the momentum with which an average tuck turns as far as is wanted in that
+time: neither too little nor too much, [AlBorno2014]. Velocity and angular momentum are then to be
+there together, when the centre of mass has risen to where the legs end.
+"""
+
+from typing import Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours import support
+from rotctl.behaviours.flight import Flight
+from rotctl.behaviours.scene import Scene
+from rotctl.control.task import Tasks
+from rotctl.errors import InputError
+from rotctl.linear import solve
+from rotctl.mechanics.model import Model, body_ids
+from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
+
+
+@validated(frozen=True, config=STRICT)
+class Lean:
+    """Go down, then fall slowly to one side, pressure inside the feet all the while: linear.
+
+    Along the way the centre of mass gets its speed, as far as pressure within the feet can give
+    it; across it the capture point is kept over them.
+
+    Attributes:
+        bodies: that stand.
+        margin: inside the support that the pressure keeps [m].
+        speed: to forward, backward where it is negative [m/s]; 0 keeps to the middle.
+        eager: how fast a speed is taken up [1/s].
+        gain: of the pressure beyond the capture point [-].
+        height: of the centre of mass over the ground [m]; sink: it comes there at [m/s], and
+            steady: in the end slower, by its distance [1/s].
+    """
+
+    law: Literal["lean"]
+    bodies: tuple[str, ...]
+    margin: NonNegative
+    speed: Finite
+    eager: Positive
+    gain: NonNegative
+    height: Positive
+    sink: Positive
+    steady: Positive
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        state, (ahead, *_) = scene.state, scene.axes
+        x, y, z = state.momentum.com.tolist()
+        task["acceleration"] = level(scene, self.bodies, self.gain, self.margin)
+        if self.speed:
+            fx, fy = ahead[:2].tolist()
+            vx, vy, _ = state.momentum.com_velocity.tolist()
+            more = self.eager * (self.speed - fx * vx - fy * vy)
+            rate = support.pendulum_rate(scene.model, state)
+            px, py = x - more * fx / rate**2, y - more * fy / rate**2
+            corners, middle = feet(scene, self.bodies)
+            px, py = support.within(corners, middle, (px, py), self.margin)
+            push = rate * rate * (fx * (x - px) + fy * (y - py))
+            across = float(task["acceleration"][0]) * fx + float(task["acceleration"][1]) * fy
+            task["acceleration"] += (push - across) * ahead
+        above = z - scene.model.ground.height(x, y) - self.height
+        down = min(max(self.steady * above, -self.sink), self.sink)
+        fall = float(state.momentum.com_velocity[2])
+        task["acceleration"][2] = -self.eager * (down + fall)
+
+
+@validated(frozen=True, config=STRICT)
+class Launch:
+    """The velocity at take-off is there when the height is: linear.
+
+    Attributes:
+        bodies: that push.
+        margin: inside the support that the pressure keeps across the way [m].
+        forward, up: velocity at take-off [m/s].
+        height: of the centre of mass over the ground there [m].
+        soonest: the time that is left counts as so much at least [s].
+    """
+
+    law: Literal["launch"]
+    bodies: tuple[str, ...]
+    margin: NonNegative
+    forward: Finite
+    up: Positive
+    height: Positive
+    soonest: Positive
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        ahead, left, _ = scene.axes
+        time = self.left(scene)
+        velocity = scene.state.momentum.com_velocity
+        missing = self.forward * ahead - velocity
+        missing[2] = self.up - float(velocity[2])
+        across = level(scene, self.bodies, 1.0, self.margin)
+        wanted = missing / time
+        wanted += float((across * left).sum() - (wanted * left).sum()) * left
+        task["acceleration"] = wanted
+
+    def left(self, scene: Scene) -> float:
+        """Time to take-off [s], at the mean of the speed now and that at take-off."""
+        x, y, z = scene.state.momentum.com.tolist()
+        way = max(scene.model.ground.height(x, y) + self.height - z, 0.0)
+        speed = max(float(scene.state.momentum.com_velocity[2]) + self.up, 0.5)
+        return max(2.0 * way / speed, self.soonest)
+
+
+@validated(frozen=True, config=STRICT)
+class Whirl:
+    """Angular momentum at take-off, as much as the flight needs at an average tuck: spin.
+
+    Attributes:
+        task: whose aim is `launch`.
+        flight: name of the stage that flies.
+        amount: of the tuck that is planned with [-]: room is left to either side.
+        calm: angular momentum across the way fades at this rate [1/s].
+    """
+
+    law: Literal["whirl"]
+    task: str
+    flight: str
+    amount: Fraction
+    calm: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        momentum, left = scene.state.momentum, scene.axes[1]
+        launch = scene.aims.get(self.task)
+        flight = scene.laws.get(self.flight)
+        if not isinstance(launch, Launch):
+            raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
+        if not isinstance(flight, Flight):
+            raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
+        wanted = self.planned(scene, launch, flight)
+        along = float((momentum.angular * left).sum())
+        rate = -self.calm * (momentum.angular - along * left)
+        rate += (wanted - along) / launch.left(scene) * left
+        task["acceleration"] = solve(momentum.inertia, rate)
+
+    def planned(self, scene: Scene, launch: Launch, flight: Flight) -> float:
+        """Angular momentum about left at take-off [kg m2/s]."""
+        x, y, _ = scene.state.momentum.com.tolist()
+        ground = scene.model.ground.height(x, y)
+        air = flight.time(scene, [x, y, ground + launch.height], launch.up)
+        return flight.momentum(scene, self.amount, air)
+
+
+def feet(scene: Scene, bodies: tuple[str, ...]) -> tuple[list[support.Point], support.Point]:
+    """Corners and middle of the bodies that stand."""
+    standing = body_ids(scene.model.mj, bodies, "behaviour.stages.tasks.bodies")
+    ends = support.ends(scene.model, scene.state, standing)
+    return support.hull(ends), support.middle(ends)
+
+
+def leaning(scene: Scene, bodies: tuple[str, ...]) -> tuple[float, float]:
+    """How far the centre of mass is ahead of the middle of the feet, and over the ground [m]."""
+    _, (mx, my) = feet(scene, bodies)
+    x, y, z = scene.state.momentum.com.tolist()
+    fx, fy, _ = scene.axes[0].tolist()
+    return fx * (x - mx) + fy * (y - my), z - scene.model.ground.height(mx, my)
+
+
+def level(scene: Scene, bodies: tuple[str, ...], gain: float, margin: float) -> np.ndarray:
+    """Level acceleration (3,) that keeps the capture point over the feet [m/s2]."""
+    corners, (mx, my) = feet(scene, bodies)
+    rate = support.pendulum_rate(scene.model, scene.state)
+    x, y = support.capture_point(scene.state, rate)
+    reach = 1.0 + gain
+    wish = (mx + reach * (x - mx), my + reach * (y - my))
+    px, py = support.within(corners, (mx, my), wish, margin)
+    cx, cy, _ = scene.state.momentum.com.tolist()
+    return np.array([rate * rate * (cx - px), rate * rate * (cy - py), 0.0])

@@ -1,0 +1,109 @@
+"""How a stage chooses the pose that is tracked: over the phase, over a rise, or as flight needs."""
+
+from dataclasses import dataclass, field
+from math import copysign
+from typing import Protocol
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.flight import Aloft
+from rotctl.behaviours.scene import Scene
+from rotctl.mechanics.model import Model
+from rotctl.motion import PosePair, Turn, make_pose
+from rotctl.rotations import Array
+from rotctl.settings import STRICT, Positive, Range
+
+
+class PoseLaw(Protocol):
+    """A stage's pose as a feedback law of the state."""
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """What it remembers, one control period [s] on."""
+        ...
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """Both poses (2, nu) to track [rad], and how fast they move (2, nu) [rad/s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class OverPhase:
+    """Key poses over the phase, so far ahead of it, at most at the target [rad]."""
+
+    pair: PosePair
+    lead: float
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """Nothing."""
+        return None
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        ahead = min(max(scene.target - scene.turned, -self.lead), self.lead)
+        poses = self.pair.at(scene.excursion.phase + ahead)
+        return poses, np.zeros_like(poses)
+
+
+@validated(frozen=True, config=STRICT)
+class RiseSettings:
+    """From one pose to another while the centre of mass rises.
+
+    Attributes:
+        start, end: poses by joint name [rad].
+        height: of the centre of mass over the ground in the end [m].
+        parts: of the way to that height in which a joint moves [-], by name; the others take all.
+    """
+
+    start: dict[str, Turn]
+    end: dict[str, Turn]
+    height: Positive
+    parts: dict[str, Range] = field(default_factory=dict)
+
+    def make(self, model: Model, key: str) -> "Rise":
+        """For one run.
+
+        Raises:
+            InputError: a name is no joint of the model.
+        """
+        parts = np.tile([0.0, 1.0], (len(model.joint_names), 1))
+        for name, part in self.parts.items():
+            parts[model.motors(name, f"{key}.parts")] = part
+        start = make_pose(model, self.start, f"{key}.start")
+        end = make_pose(model, self.end, f"{key}.end")
+        return Rise(start, end, self.height, parts)
+
+
+@dataclass(frozen=True)
+class Rise:
+    """Joints follow the height, and are given their speeds at it: a jump must not be braked.
+
+    Attributes:
+        start, end: (nu,) poses [rad].
+        height: of the centre of mass in the end [m].
+        parts: (nu, 2) of the way in which each joint moves [-].
+    """
+
+    start: Array
+    end: Array
+    height: float
+    parts: Array
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """Nothing."""
+        return None
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        x, y, z = scene.state.momentum.com.tolist()
+        first = float(scene.begin.com[2])
+        way = scene.model.ground.height(x, y) + self.height - first
+        way = copysign(max(abs(way), 1e-3), way)
+        begin, finish = self.parts.T
+        gone = ((z - first) / way - begin) / (finish - begin)
+        share = np.minimum(np.maximum(gone, 0.0), 1.0)
+        speed = np.where(gone == share, 1.0 / (finish - begin), 0.0)
+        speed *= max(float(scene.state.momentum.com_velocity[2]) / way, 0.0)
+        change = self.end - self.start
+        pose, speed = self.start + share * change, speed * change
+        return np.array((pose, pose)), np.array((speed, speed))
