@@ -59,6 +59,8 @@ GOOD = RollingMetrics(
     ground_force_p99=2000.0,
     ground_force_peak=4000.0,
     airborne=0.0,
+    jerk=500.0,
+    chatter=5.0,
     recovery=0.5,
     recovered=1.0,
     torque_p99_fraction=0.6,
@@ -92,6 +94,9 @@ def make_log(steps=600, rate=0.5, speed=0.9, heading=0.0, lateral=0.0, turns=Non
         "contacts/ground_force": np.tile([0.0, 30.0, 40.0], (steps, 1)),
         "contacts/ground_force_peak": none + 60.0,
         "contacts/penetration": none + 0.01,
+        "contacts/body": np.full((steps, 3), -1, dtype=np.int32),
+        "contacts/used": np.zeros((steps, 3), dtype=bool),
+        "trajectory/qvel": np.zeros((steps, 8)),
         "trajectory/ctrl": np.zeros((steps, 2)),
         "model/torque_limit": np.array([10.0, 20.0]),
         "solver/status": np.zeros(steps, dtype=np.uint8),
@@ -268,6 +273,27 @@ def test_airborne_is_the_share_without_contact():
     assert measure(log, CRITERIA, 0.5, PERIOD).airborne == pytest.approx(0.25)
 
 
+def test_jerk_is_that_of_a_known_motion():
+    """Joint velocity sin(w t) has jerk -w^2 sin(w t): rms w^2 / sqrt(2), for one joint of two."""
+    log, w = make_log(steps=1200), 2.0
+    log["trajectory/qvel"][:, 6] = np.sin(w * PERIOD * np.arange(1200))
+    log["trajectory/qvel"][:, :6] = np.random.default_rng(0).normal(size=(1200, 6))  # no joints
+    expected = w**2 / np.sqrt(2) / np.sqrt(2)
+    assert measure(log, CRITERIA, 0.5, PERIOD).jerk == pytest.approx(expected, rel=0.01)
+
+
+def test_chatter_counts_bodies_not_slots():
+    """Body 4 changes its slot and is let go once; body 7 comes, in two contacts, and stays."""
+    log = make_log(steps=601)
+    body, used = log["contacts/body"], log["contacts/used"]
+    body[:100, 0] = body[100:300, 1] = 4
+    used[:100, 0] = used[100:300, 1] = True
+    body[300:, 1:] = 7
+    used[300:, 1:] = True
+    body[400:, 0] = 4  # there, but not used
+    assert measure(log, CRITERIA, 0.5, PERIOD).chatter == pytest.approx(2 / 10)
+
+
 def test_only_steps_without_any_solver_are_failures():
     log = make_log()
     log["solver/status"][[3, 4, 5]] = 1
@@ -279,7 +305,15 @@ def test_only_steps_without_any_solver_are_failures():
 def test_short_logs(steps):
     found = measure(make_log(steps=steps), CRITERIA, 0.5, PERIOD)
     assert found.duration == pytest.approx(steps * PERIOD)
-    later = ("angular_velocity_mean", "speed_mean", "recovery", "recovered", *OF_REVOLUTIONS)
+    later = (
+        "angular_velocity_mean",
+        "speed_mean",
+        "recovery",
+        "recovered",
+        *(("jerk",) if steps < 3 else ()),
+        *(("chatter",) if steps < 2 else ()),
+        *OF_REVOLUTIONS,
+    )
     for name, value in vars(found).items():
         assert np.isfinite(value) != (name in later), name
 

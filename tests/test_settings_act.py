@@ -53,6 +53,9 @@ CASES = {
         },
     ),
     "as written": Case((), r"controller\.thresholds\.(force|torque)", seconds=2.0),
+    "hull": Case(
+        ("controller.supervisor=convex_hull",), r"controller\.thresholds\.hull", seconds=2.0
+    ),
     "push": Case(
         ("disturbance=push", "disturbance.time=[0.05,0.2]"),
         r"disturbance\..*|controller\.sees_disturbance",

@@ -58,6 +58,7 @@ def serves(settings: ControllerSettings, model: Model) -> bool:
     """Whether these settings are ones that the compiled step knows."""
     return (
         settings.solver == "boxqp"
+        and settings.supervisor in SUPERVISORS
         and settings.form == "condensed"
         and model.mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         and len(model.trunk) <= constant("TRUNK")
@@ -154,12 +155,13 @@ class CompiledStep:
     def decide(self, state: State, command: Command, blend: float) -> Decision | None:
         """Torques; None where the reference has to take over.
 
-        That is where a solve fails, for a kind of task that C has not, for more tasks than it
-        has room for, and for any state but the one that `read` read last, as part of it is kept
-        on the C side.
+        That is where a solve fails, for a kind of task or a supervisor that C has not, for more
+        tasks than it has room for, and for any state but the one that `read` read last, as part
+        of it is kept on the C side.
         """
         k = len(command.tasks)
-        if state is not self._last or k > TASKS:
+        supervisor = SUPERVISORS.get(command.supervisor)
+        if state is not self._last or k > TASKS or supervisor is None:
             return None
         given, answer = self._command, self._answer
         gains = (command.pose, command.contact, command.thresholds)
@@ -168,7 +170,7 @@ class CompiledStep:
             self._gains = gains
         self._forward[:] = command.forward
         given.blend = blend
-        given.supervisor = SUPERVISORS[command.supervisor]
+        given.supervisor = supervisor
         if command.tasks is not self._tasks:  # a behaviour mostly fills the same ones again
             self._tasks = tasks = np.ascontiguousarray(command.tasks, TASK)
             given.task, given.tasks = tasks.ctypes.data, k

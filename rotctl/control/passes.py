@@ -1,7 +1,8 @@
 """Two passes of the optimisation with the supervisor between, by one form and one solver."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,9 +10,10 @@ from rotctl.control import condensed, literal
 from rotctl.control.answer import Answer
 from rotctl.control.settings import FormName
 from rotctl.control.stack import Stack
-from rotctl.control.supervisor import RULES, Evidence
+from rotctl.control.supervisor import FREE, RULES, Evidence
 from rotctl.control.task import Command
 from rotctl.linear import product
+from rotctl.mechanics.contacts import realised_forces
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.qp import Solution, Solver
@@ -52,13 +54,15 @@ class Link:
     def passes(self, stack: Stack, model: Model, state: State, command: Command) -> Passes:
         """The optimisation over all candidate contacts, then over those that pass the test."""
         everything = np.ones(stack.contacts, dtype=bool)
-        first = self._answer(stack, model, state, None)
+        free = command.supervisor in FREE
+        asked = replace(stack, rate_weight=np.zeros_like(stack.rate_weight)) if free else stack
+        first = self._answer(asked, model, state, None)
         over_all = Passes(first, stack, everything, first.solution.iterations)
         rule = RULES.get(command.supervisor)
         if over_all.reason or rule is None:
             return over_all
-        keep = rule(_evidence(first, stack, state), command.thresholds)
-        if keep.all():
+        keep = rule(_evidence(first, stack, model, state, command), command.thresholds)
+        if keep.all() and not free:
             return over_all
         subset = stack.subset(keep)
         condenses = self.form == "condensed"
@@ -82,13 +86,31 @@ def pose_only(stack: Stack) -> Passes:
     return Passes(answer, stack.subset(nothing), nothing, 0)
 
 
-def _evidence(first: Answer, stack: Stack, state: State) -> Evidence:
-    m = stack.contacts
-    per_contact = stack.maps[3:].reshape(3, m, 3)  # torque about the CM per force component
-    torque = np.einsum("amc,mc->ma", per_contact, first.force)
-    normal_rows = stack.jacobian[::3]
+def _evidence(
+    first: Answer, stack: Stack, model: Model, state: State, command: Command
+) -> Evidence:
+    m, mu = stack.contacts, stack.friction
+    maps = stack.maps.reshape(6, m, 3)
+    edges = np.array([[1.0, mu, mu], [1.0, mu, -mu], [1.0, -mu, mu], [1.0, -mu, -mu]])
+    candidates = ~command.held_out[state.contacts.body]
     return Evidence(
-        force=np.sqrt((first.force**2).sum(axis=1)),
-        torque=np.sqrt((torque**2).sum(axis=1)),
-        separation=product(normal_rows, state.velocity),
+        push=np.einsum("amc,mc->ma", maps, first.force),
+        separation=product(stack.jacobian[::3], state.velocity),
+        place=state.contacts.position[candidates, :2],
+        edges=np.einsum("amc,ec->mea", maps, edges),
+        realised=lambda: _realised(first, model, state)[candidates],
     )
+
+
+def _realised(first: Answer, model: Model, state: State) -> Array:
+    """Force and torque about the centre of mass (k, 6) of every contact, [N, N m].
+
+    In the physics step that begins at this state, with the torques of `first`.
+    """
+    tried = mujoco.MjData(model.mj)
+    mujoco.mj_copyData(tried, model.mj, state.data)
+    tried.ctrl[:] = np.clip(first.torque, -model.torque_limit, model.torque_limit)
+    mujoco.mj_forward(model.mj, tried)
+    force = realised_forces(model.mj, tried, state.contacts)
+    lever = state.contacts.position - state.momentum.com
+    return np.concatenate((force, np.cross(lever, force)), axis=1)

@@ -34,6 +34,8 @@ COLUMNS = (
     Column("ground_force_p99", "Ground force, 99th percentile", "N"),
     Column("ground_force_peak", "Ground force, peak", "N"),
     Column("airborne", "Share of the time without a contact", ""),
+    Column("jerk", "Jerk of the joints, rms", "rad/s3"),
+    Column("chatter", "Contacts taken or left by control", "1/s"),
     Column("recovery", "Rolling on after the push", "s"),
     Column("recovered", "Rolled on in time after the push", ""),
 )
@@ -112,6 +114,8 @@ class RollingMetrics:
         ground_force_p99: 99th percentile of the ground's force, mean over a control step [N].
         ground_force_peak: its largest magnitude in a physics step [N].
         airborne: share of the time without a contact with the ground.
+        jerk: root mean square over joints and time [rad/s3].
+        chatter: bodies whose contacts control begins or ceases to use, a second [1/s].
         recovery: from the end of what acted from outside until it rolls on along the way [s];
             NaN if it never did, or nothing acted and ended.
         recovered: 1 if that was in time, 0 if not; NaN where nothing acted and ended.
@@ -140,6 +144,8 @@ class RollingMetrics:
     ground_force_p99: float
     ground_force_peak: float
     airborne: float
+    jerk: float
+    chatter: float
     recovery: float
     recovered: float
     torque_p99_fraction: float
@@ -163,6 +169,8 @@ IN_FILES_ONLY = (
     "penetration",
     "ground_force_p99",
     "ground_force_peak",
+    "jerk",
+    "chatter",
     "recovery",
     "recovered",
 )
@@ -214,11 +222,30 @@ def measure(
         ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
+        jerk=_jerk(log, period),
+        chatter=_chatter(log, period),
         **_recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period),
     )
+
+
+def _jerk(log: Arrays, period: float) -> float:
+    """Of the joints, from the second difference of their velocities; NaN for too few rows."""
+    jerk = np.diff(floats(log, "trajectory/qvel")[:, 6:], 2, axis=0) / period**2
+    return float(np.sqrt((jerk**2).mean())) if len(jerk) else math.nan
+
+
+def _chatter(log: Arrays, period: float) -> float:
+    """Bodies that control takes up or lets go of, a second; NaN for too few rows."""
+    body, used = np.asarray(log["contacts/body"]), np.asarray(log["contacts/used"]).astype(bool)
+    if len(body) < 2:
+        return math.nan
+    held = np.zeros((len(body), int(body.max(initial=0)) + 1), dtype=bool)
+    rows, slots = np.nonzero(used)
+    held[rows, body[rows, slots]] = True
+    return float((held[1:] != held[:-1]).sum() / ((len(body) - 1) * period))
 
 
 def _recovery(
