@@ -146,8 +146,8 @@ def _absurd_text(parts: Way, value: Any) -> str:
     return "must not be empty" if parts and parts[-1] == "name" and not value.strip() else ""
 
 
-def _short(text: str | int) -> bool:
-    return isinstance(text, int) or (text.isprintable() and len(text) <= LONGEST_TEXT)
+def _short(text: object) -> bool:
+    return str(text).isprintable() and len(str(text)) <= LONGEST_TEXT
 
 
 def _absurd_number(parts: Way, value: Any) -> str:

@@ -80,6 +80,15 @@ def test_a_message_does_not_repeat_a_megabyte(key):
     )
 
 
+@pytest.mark.parametrize("key", [1.5, True, None, 3])
+def test_a_key_that_is_no_text(key):
+    """Hydra takes them from a file."""
+    data = composed(STAND)
+    data["behaviour"][key] = 1
+    with pytest.raises(InputError, match="keys should be strings"):
+        check(data)
+
+
 def test_nor_does_one_of_keys():
     said = complaint(STAND, {"behaviour.tasks." + "a" * 10**6: {"kind": "limits"}})
     assert said == (

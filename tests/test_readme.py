@@ -27,7 +27,8 @@ def test_commands_were_found():
 @pytest.mark.parametrize("line", RUNS)
 def test_runs(line, tmp_path, capsys):
     words = [w for w in shlex.split(line) if w != "--filmstrip" and "duration" not in w]
-    assert main([*words, "duration=0.1", "--out", str(tmp_path)]) == 0
+    pushed = ["disturbance.time=[0,0]"] if "disturbance=push" in words else []
+    assert main([*words, *pushed, "duration=0.1", "--out", str(tmp_path)]) == 0
     assert "run.h5" in capsys.readouterr().out
 
 

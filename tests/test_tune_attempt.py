@@ -13,7 +13,8 @@ from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
 from rotctl.tune.space import Objective, Stopping
 
 OBJECTIVE = Objective("mean", survival=0.6, progress=0.4, pace=0.65, drift=0.03, heading=0.001)
-PERFECT = TrialRun(survived=10.0, wanted=10.0, revolutions=6.5, drift=0.0, heading=0.0)
+WANTED = replace(OBJECTIVE, success=0.5)
+PERFECT = TrialRun(10.0, wanted=10.0, revolutions=6.5, drift=0.0, heading=0.0, success=True)
 STOPPING = Stopping(stall_time=1.5, stall_progress=0.1, off_axis=70.0)
 
 
@@ -32,6 +33,22 @@ STOPPING = Stopping(stall_time=1.5, stall_progress=0.1, off_axis=70.0)
 )
 def test_the_score_of_a_run(run, worth):
     assert score(run, OBJECTIVE) == pytest.approx(worth)
+
+
+def test_a_success_by_the_criteria_is_worth_more():
+    assert score(PERFECT, WANTED) == pytest.approx(1.5)
+    assert score(replace(PERFECT, success=False), WANTED) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("override", "success"),
+    [("duration=4", True), ("criteria.trunk_turn=2", False), ("criteria.height=[0.6,0.8]", False)],
+)
+def test_what_the_criteria_refuse_is_no_success(override, success):
+    """Of a roll that goes on to its end all the same."""
+    run = attempt(Attempt(load(["seed=1000000", "duration=4", override]), STOPPING))
+    assert run.to_the_end
+    assert run.success is success
 
 
 def test_the_mean_or_the_worst_run_counts():

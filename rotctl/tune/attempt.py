@@ -7,7 +7,7 @@ from math import acos, degrees, pi
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
 from rotctl.errors import InputError
-from rotctl.metrics.rolling import RollingCriteria, measure
+from rotctl.metrics.rolling import RollingCriteria, failure_reason, measure
 from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -41,12 +41,14 @@ def attempt(item: Attempt) -> TrialRun:
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
     metrics = measure(buffer.arrays(), criteria, commanded, period)
+    failed = failure_reason(metrics, criteria, config.duration)
     return TrialRun(
         survived=metrics.duration,
         wanted=config.duration,
         revolutions=metrics.revolutions,
         drift=metrics.lateral_drift,
         heading=metrics.heading_error_end,
+        success=not failed and metrics.duration >= config.duration - 1e-6,
     )
 
 

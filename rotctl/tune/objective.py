@@ -17,6 +17,7 @@ class TrialRun:
         revolutions: in-plane, in the direction commanded [rev].
         drift: largest distance from the line of travel [m].
         heading: of the trunk's axis at the end, against the rolling axis [deg].
+        success: by the criteria of its config.
     """
 
     survived: float
@@ -24,6 +25,7 @@ class TrialRun:
     revolutions: float
     drift: float
     heading: float
+    success: bool
 
     @property
     def to_the_end(self) -> bool:
@@ -31,11 +33,11 @@ class TrialRun:
         return self.survived >= self.wanted - 1e-6
 
 
-LOST = TrialRun(0.0, 1.0, 0.0, 0.0, 0.0)  # a run whose worker died every time: worth nothing
+LOST = TrialRun(0.0, 1.0, 0.0, 0.0, 0.0, False)  # a run whose worker died every time: worth nothing
 
 
 def score(run: TrialRun, objective: Objective) -> float:
-    """What a run is worth; a perfect one `objective.survival + objective.progress`.
+    """What a run is worth; a perfect one the sum of `survival`, `progress` and `success`.
 
     A number that a broken-down run does not have counts for nothing.
     """
@@ -43,6 +45,7 @@ def score(run: TrialRun, objective: Objective) -> float:
     value = (
         objective.survival * run.survived / run.wanted
         + objective.progress * min(max(paced, 0.0), 1.0)
+        + objective.success * run.success
         - objective.drift * abs(run.drift)
         - objective.heading * abs(run.heading)
     )

@@ -94,6 +94,7 @@ class Objective:
         pace: revolutions a second that earn full marks, and no more than that [rev/s].
         drift: taken off for each metre of lateral drift [1/m].
         heading: taken off for each degree of heading error at the end [1/deg].
+        success: on what the config's criteria call a success [-].
     """
 
     over_runs: Literal["mean", "worst"]
@@ -102,6 +103,7 @@ class Objective:
     pace: Positive
     drift: NonNegative
     heading: NonNegative
+    success: NonNegative = 0.0
 
 
 @validated(frozen=True, config=STRICT)
