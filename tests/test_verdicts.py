@@ -11,6 +11,7 @@ from rotctl.metrics import orientation, standing
 PERIOD = 1.0 / 60.0
 TURNING = load(["behaviour=turn_over"]).criteria
 STANDING = load(["behaviour=stand"]).criteria
+LANDING = load(["behaviour=stand_step"]).criteria
 
 
 def rows(*columns):
@@ -111,7 +112,8 @@ def stand(lean=0.0, height=1.0, speed=0.0, on=2, seconds=3.0):
 
 
 def judged_stand(log, criteria=STANDING):
-    return standing.failure(standing.measure(log, criteria, PERIOD), criteria)
+    duration = PERIOD * len(log["trajectory/com"])
+    return standing.failure(standing.measure(log, criteria, PERIOD), criteria, duration)
 
 
 def test_who_stays_up_has_stood():
@@ -131,3 +133,25 @@ def test_who_stays_up_has_stood():
 )  # fmt: skip
 def test_who_has_not(log, reason):
     assert judged_stand(log) == reason
+
+
+def test_who_lands_may_crouch_and_then_stands_for_two_seconds():
+    crouched = np.r_[1.0, np.full(59, 0.6), np.ones(120)]
+    assert judged_stand(stand(height=crouched)) == "sank to 0.60 of its height"
+    assert judged_stand(stand(height=crouched), LANDING) == ""
+
+
+@pytest.mark.parametrize(
+    ("log", "reason"),
+    [
+        (stand(height=np.r_[1.0, np.full(60, 0.79), np.ones(119)]), "sank to 0.79 of its height"),
+        (stand(lean=np.r_[np.full(61, 21.0), np.zeros(119)]), "leans by 21 deg at the end"),
+        (stand(speed=np.r_[np.full(61, 0.3), np.zeros(119)]),
+         "still moves at 0.30 m/s at the end"),
+        (stand(on=np.r_[3, np.full(179, 2)]),
+         "touched the ground with more than the feet for 0.02 s"),
+        (stand(seconds=1.9), "ends after 1.90 s, is to rest for 2"),
+    ],
+)  # fmt: skip
+def test_who_lands_otherwise_does_not_stand(log, reason):
+    assert judged_stand(log, LANDING) == reason

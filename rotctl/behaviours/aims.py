@@ -14,6 +14,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.scene import Scene
+from rotctl.behaviours.stepping import Stepping
+from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import solve
@@ -119,7 +121,7 @@ class Ground:
         body = int(task["body"])
         x, y, _ = scene.state.data.xpos[body].tolist()
         task["target"][:3] = [x, y, scene.model.ground.height(x, y) + self.height]
-        if body in scene.state.contacts.body.tolist():
+        if body == scene.step.swing or body in scene.state.contacts.body.tolist():
             task["weight"] = 0.0
 
 
@@ -160,9 +162,10 @@ class Capture:
         bodies: that stand.
         gain: of the centre of pressure beyond the capture point [-].
         margin: inside the support that the pressure keeps [m].
-        height: of the centre of mass over the support's middle, along the leg [m].
+        height: of the centre of mass over the furthest of the bodies, along the leg [m].
         sink: below that, which keeps the knees from their stops [m].
-        lunge: pressure from beyond the feet, as a multiple of how far the capture point is out [-].
+        lunge: pressure from beyond the feet, as a multiple of how far the capture point is out [-];
+            0 throws nothing.
         lunge_margin: inside the support, from which it counts as out [m].
         lunge_most: furthest pressure from beyond the feet [m].
     """
@@ -173,9 +176,9 @@ class Capture:
     margin: NonNegative
     height: Positive
     sink: NonNegative
-    lunge: NonNegative
-    lunge_margin: NonNegative
-    lunge_most: NonNegative
+    lunge: NonNegative = 0.0
+    lunge_margin: NonNegative = 0.0
+    lunge_most: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -184,7 +187,7 @@ class Capture:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
         model, state = scene.model, scene.state
-        corners, (mx, my) = self._support(scene)
+        feet, corners, (mx, my) = self._support(scene)
         rate = support.pendulum_rate(model, state)
         x, y = support.capture_point(state, rate)
         reach = 1.0 + self.gain
@@ -193,13 +196,13 @@ class Capture:
         ex, ey = self.beyond(scene)
         cx, cy, _ = state.momentum.com.tolist()
         task["acceleration"] = [rate * rate * (cx - px - ex), rate * rate * (cy - py - ey), 0.0]
-        aside = (cx - mx) ** 2 + (cy - my) ** 2
+        aside = max((cx - fx) ** 2 + (cy - fy) ** 2 for fx, fy in feet)
         up = sqrt(max(self.height**2 - aside, 0.0))
         task["target"][:3] = [cx, cy, model.ground.height(cx, cy) + up - self.sink]
 
     def beyond(self, scene: Scene) -> tuple[float, float]:
         """How far beyond the feet pressure is wanted [m]."""
-        corners, middle = self._support(scene)
+        _, corners, middle = self._support(scene)
         rate = support.pendulum_rate(scene.model, scene.state)
         x, y = support.capture_point(scene.state, rate)
         ix, iy = support.within(corners, middle, (x, y), self.lunge_margin)
@@ -208,10 +211,15 @@ class Capture:
         share = min(1.0, self.lunge_most / far) if far > 0.0 else 0.0
         return share * ex, share * ey
 
-    def _support(self, scene: Scene) -> tuple[list[support.Point], support.Point]:
-        standing = body_ids(scene.model.mj, self.bodies, "behaviour.stages.tasks.bodies")
-        ends = support.ends(scene.model, scene.state, standing)
-        return support.hull(ends), support.middle(ends)
+    def _support(self, scene: Scene) -> tuple[list[Point], list[Point], Point]:
+        """Middles of the bodies, corners of the hull of those on the ground, and its middle."""
+        model, state = scene.model, scene.state
+        bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+        bodies = [body for body in bodies if body != scene.step.swing]
+        stand = [body for body in bodies if not support.lifted(model, state, body)]
+        ends = support.ends(model, state.data, stand or bodies)
+        middles = [support.middle(support.ends(model, state.data, (body,))) for body in bodies]
+        return middles, support.hull(ends), support.middle(ends)
 
 
 @validated(frozen=True, config=STRICT)
@@ -244,7 +252,18 @@ class Lunge:
 
 
 Aim = Annotated[
-    Hold | Upright | Bow | Pose | Ground | Turn | Capture | Lunge | Lean | Launch | Whirl,
+    Hold
+    | Upright
+    | Bow
+    | Pose
+    | Ground
+    | Turn
+    | Capture
+    | Lunge
+    | Stepping
+    | Lean
+    | Launch
+    | Whirl,
     Field(discriminator="law"),
 ]
 

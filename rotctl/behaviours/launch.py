@@ -164,7 +164,7 @@ class Whirl:
 def feet(scene: Scene, bodies: tuple[str, ...]) -> tuple[list[support.Point], support.Point]:
     """Corners and middle of the bodies that stand."""
     standing = body_ids(scene.model.mj, bodies, "behaviour.stages.tasks.bodies")
-    ends = support.ends(scene.model, scene.state, standing)
+    ends = support.ends(scene.model, scene.state.data, standing)
     return support.hull(ends), support.middle(ends)
 
 

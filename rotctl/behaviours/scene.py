@@ -28,6 +28,20 @@ class Begin:
 
 
 @dataclass(frozen=True)
+class Step:
+    """A step with a foot, or none where both stand; see `rotctl.behaviours.stepping`.
+
+    Attributes:
+        swing, stance: MuJoCo ids of the feet; 0 where none swings.
+        begin: of the swing [s].
+    """
+
+    swing: int = 0
+    stance: int = 0
+    begin: float = 0.0
+
+
+@dataclass(frozen=True)
 class Scene:
     """One instant of a staged behaviour.
 
@@ -44,6 +58,7 @@ class Scene:
         turned: in-plane excursion since its start [rad].
         airborne: how long nothing has touched the ground [s].
         still: how long nothing has moved faster than `SLOW` [s].
+        step: with a foot.
     """
 
     model: Model
@@ -61,3 +76,4 @@ class Scene:
     turned: float
     airborne: float
     still: float
+    step: Step

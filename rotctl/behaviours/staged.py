@@ -25,7 +25,8 @@ from rotctl.behaviours.behaviour import (
 from rotctl.behaviours.facing import FACING, frame_of
 from rotctl.behaviours.flight import Aloft, Flight, FlightSettings
 from rotctl.behaviours.posing import OverPhase, PoseLaw, RiseSettings
-from rotctl.behaviours.scene import Begin, Scene
+from rotctl.behaviours.scene import Begin, Scene, Step
+from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.until import Until
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import KINDS, kind
@@ -162,6 +163,7 @@ class StagedMemory:
         excursion: now.
         airborne, still: for how long [s].
         aloft: of the present stage's flight.
+        step: with a foot.
     """
 
     stage: int
@@ -171,6 +173,7 @@ class StagedMemory:
     airborne: float = 0.0
     still: float = 0.0
     aloft: Aloft | None = None
+    step: Step = Step()
 
 
 @dataclass(frozen=True)
@@ -187,6 +190,7 @@ class _Part:
     pose: PoseGains
     contact: ContactGains
     aims: dict[str, Aim]
+    stepping: Stepping | None
     weight: Array
 
 
@@ -246,7 +250,9 @@ class Staged:
         aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
         pose = pose_gains_of(self._control, stage.pose)
         contact = contact_gains_of(self._control, stage.contact)
-        return _Part(tasks, fillers, slots, held_out, pose, contact, aims, tasks["weight"].copy())
+        stepping = next((aim for aim in aims.values() if isinstance(aim, Stepping)), None)
+        weight = tasks["weight"].copy()
+        return _Part(tasks, fillers, slots, held_out, pose, contact, aims, stepping, weight)
 
     def _law(self, stage: Stage) -> PoseLaw:
         key = f"behaviour.stages.{stage.name}"
@@ -289,6 +295,9 @@ class Staged:
             airborne=0.0 if state.contacts.count else before.airborne + self._period,
             still=before.still + self._period if slow else 0.0,
         )
+        stepping = self._parts[memory.stage].stepping
+        step = stepping.next(self._scene(memory, state)) if stepping else Step()
+        memory = replace(memory, step=step)
         until = self._settings.stages[memory.stage].until
         last = memory.stage + 1 == len(self._parts)
         if not last and until is not None and until.met(self._scene(memory, state)):
@@ -306,6 +315,8 @@ class Staged:
         part.tasks["weight"] = part.weight
         for i, kind_name, aim in part.fillers:
             aim.fill(part.tasks[i], kind_name, scene)
+        held_out = part.held_out.copy()
+        held_out[memory.step.swing] = True  # where none swings, the world's
         pose_a, pose_b = poses + _lag(part.pose) * speeds
         return Command(
             tasks=part.tasks,
@@ -316,7 +327,7 @@ class Staged:
             contact=part.contact,
             supervisor=stage.supervisor or self._control.supervisor,
             thresholds=self._control.thresholds,
-            held_out=part.held_out,
+            held_out=held_out,
             slots=part.slots,
         )
 
@@ -342,6 +353,7 @@ class Staged:
             turned=memory.excursion.phase - memory.first.phase,
             airborne=memory.airborne,
             still=memory.still,
+            step=memory.step,
         )
 
     def _axis(self, state: State) -> Array:

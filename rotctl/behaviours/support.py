@@ -1,6 +1,8 @@
 """The support polygon of the parts that stand, and the capture point over it."""
 
-from math import fsum, sqrt
+from collections.abc import Iterable
+from functools import lru_cache
+from math import fsum, inf, sqrt
 
 import mujoco
 import numpy as np
@@ -10,25 +12,49 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
 Point = tuple[float, float]
+CLEAR = 0.03  # [m] above the ground
 LEAST_HEIGHT = 0.1  # [m] of a centre of mass over its feet, for the pendulum that it is
 
 
-def ends(model: Model, state: State, bodies: list[int]) -> list[Point]:
+@lru_cache(maxsize=64)
+def _solid(mj: mujoco.MjModel, body: int) -> tuple[tuple[int, float, float], ...]:
+    """A body's solid capsules and spheres: number, half length and radius [m]."""
+    capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
+    found = np.flatnonzero((mj.geom_bodyid == body) & (mj.geom_contype > 0)).tolist()
+    return tuple(
+        (geom, float(mj.geom_size[geom, 1] * capsule[geom]), float(mj.geom_size[geom, 0]))
+        for geom in found
+    )
+
+
+def ends(model: Model, data: mujoco.MjData, bodies: Iterable[int]) -> list[Point]:
     """The ends of the solid capsules of these bodies, seen from above [m].
 
     Raises:
         InputError: there are none.
     """
-    mj, data, found = model.mj, state.data, []
-    solid = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
-    for geom in np.flatnonzero(solid).tolist():
-        half = mj.geom_size[geom, 1] * (mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE)
-        x, y = data.geom_xpos[geom, :2].tolist()
-        dx, dy = (half * data.geom_xmat[geom].reshape(3, 3)[:2, 2]).tolist()
-        found += [(x + dx, y + dy), (x - dx, y - dy)]
+    found = []
+    for body in bodies:
+        for geom, half, _ in _solid(model.mj, body):
+            x, y, _ = data.geom_xpos[geom].tolist()
+            across = data.geom_xmat[geom].tolist()
+            dx, dy = half * across[2], half * across[5]
+            found += [(x + dx, y + dy), (x - dx, y - dy)]
     if not found:
         raise InputError("behaviour: a task is to balance over bodies that cannot stand")
     return found
+
+
+def lifted(model: Model, state: State, body: int) -> bool:
+    """Whether nothing of a body touches the ground, and all of it is higher than `CLEAR`."""
+    if body in state.contacts.body.tolist():
+        return False
+    for geom, half, radius in _solid(model.mj, body):
+        x, y, z = state.data.geom_xpos[geom].tolist()
+        low = z - half * abs(float(state.data.geom_xmat[geom, 8])) - radius
+        if low - model.ground.height(x, y) < CLEAR:
+            return False
+    return True
 
 
 def hull(points: list[Point]) -> list[Point]:
@@ -70,6 +96,23 @@ def within(corners: list[Point], centre: Point, wish: Point, margin: float) -> P
         if out > room:
             share = min(share, max(room, 0.0) / out)
     return cx + share * dx, cy + share * dy
+
+
+def outside(corners: list[Point], point: Point) -> float:
+    """How far a point lies beyond the hull's nearest edge's line [m]; negative inside."""
+    x, y = point
+    far = -inf
+    for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
+        ex, ey = bx - ax, by - ay
+        far = max(far, (ey * (x - ax) - ex * (y - ay)) / sqrt(ex * ex + ey * ey))
+    return far
+
+
+def forward(state: State, body: int) -> Point:
+    """Where a body's front points, seen from above, unit."""
+    x, y = state.data.xmat[body].reshape(3, 3)[:2, 0].tolist()
+    length = sqrt(x * x + y * y) or 1.0
+    return x / length, y / length
 
 
 def pendulum_rate(model: Model, state: State) -> float:

@@ -53,7 +53,7 @@ def judge(
         del found["stalled_at"]  # of people's interest in a reason alone
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
-        found, reason = asdict(stood), standing.failure(stood, criteria)
+        found, reason = asdict(stood), standing.failure(stood, criteria, steps * period)
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = asdict(turned), orientation.failure(turned, criteria, steps * period)

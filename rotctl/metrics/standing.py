@@ -1,4 +1,4 @@
-"""A standing run in numbers: what it stands on, how upright and how still, whether it stayed up."""
+"""A run that stands, or lands and stands, in numbers: on what, how upright, how still."""
 
 import math
 from dataclasses import dataclass
@@ -12,28 +12,32 @@ from rotctl.settings import STRICT, Positive
 
 COLUMNS = (
     Column("lean_most", "Largest lean of the trunk", "deg"),
-    Column("lean_end", "Lean of the trunk over the last second", "deg"),
+    Column("lean_end", "Largest lean of the trunk in the end", "deg"),
     Column("sway", "Furthest of the centre of mass from where it began", "m"),
-    Column("speed_end", "Speed of the centre of mass over the last second", "m/s"),
+    Column("speed_end", "Speed of the centre of mass in the end", "m/s"),
     Column("other_contact", "Time with anything but the feet on the ground", "s"),
     Column("height_least", "Lowest of the centre of mass, as a share of its height at first", ""),
+    Column("height_end", "The same in the end", ""),
 )
 
 
 @validated(frozen=True, config=STRICT)
 class StandingCriteria:
-    """Limits of standing; see `conf/criteria/standing.yaml`.
+    """Limits of standing and landing; see `conf/criteria/standing.yaml` and `landing.yaml`.
 
     Attributes:
+        kind: who stands may never be lower than `height`, who lands may crouch before the end.
         feet: bodies that may touch the ground.
+        rest: how long it is upright and still in the end [s].
         height: least height of the centre of mass, as a share of that at the start [-].
-        lean: of the trunk over the last second [deg].
-        speed: of the centre of mass over the last second [m/s].
+        lean: of the trunk in the end [deg].
+        speed: of the centre of mass in the end [m/s].
     """
 
     name: str
-    kind: Literal["standing"]
+    kind: Literal["standing", "landing"]
     feet: tuple[str, ...]
+    rest: Positive
     height: Positive
     lean: Positive
     speed: Positive
@@ -50,6 +54,7 @@ class StandingMetrics:
     speed_end: float
     other_contact: float
     height_least: float
+    height_end: float
 
 
 def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingMetrics:
@@ -63,7 +68,7 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
     speed = np.sqrt((velocity**2).sum(axis=1))
     height = com[:, 2] - floats(log, "trajectory/ground_height")
     sway = np.sqrt(((com[:, :2] - com[0, :2]) ** 2).sum(axis=1))
-    last = slice(-round(1.0 / period), None)
+    last = slice(-round(criteria.rest / period), None)
     return StandingMetrics(
         lean_most=float(lean.max()),
         lean_end=float(lean[last].max()),
@@ -71,6 +76,7 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
         speed_end=float(speed[last].max()),
         other_contact=float(_on_others(log, criteria.feet).sum() * period),
         height_least=float(height.min() / height[0]),
+        height_end=float(height[last].min() / height[0]),
     )
 
 
@@ -82,16 +88,18 @@ def _on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
     return np.asarray(others.any(axis=1))
 
 
-def failure(metrics: StandingMetrics, criteria: StandingCriteria) -> str:
-    """Why it did not stay up; empty if it did."""
+def failure(metrics: StandingMetrics, criteria: StandingCriteria, duration: float) -> str:
+    """Why it did not stay up; empty if it did. `duration` is the run's [s]."""
     m, c = metrics, criteria
+    low = m.height_least if c.kind == "standing" else m.height_end
     rules = (
         (
             m.other_contact == 0.0,
             f"touched the ground with more than the feet for {m.other_contact:.2f} s",
         ),
-        (m.height_least > c.height, f"sank to {m.height_least:.2f} of its height"),
+        (low > c.height, f"sank to {low:.2f} of its height"),
         (m.lean_end < c.lean, f"leans by {m.lean_end:.0f} deg at the end"),
         (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),
+        (duration > c.rest - 1e-6, f"ends after {duration:.2f} s, is to rest for {c.rest:g}"),
     )
     return next((reason for kept, reason in rules if not kept), "")

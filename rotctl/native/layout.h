@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-enum { SEEN = 1024, CONTACTS = 64, TASKS = 16, TRUNK = 16, SLOTS = 1024 };
+enum { SEEN = 1024, CONTACTS = 64, TASKS = 24, TRUNK = 16, SLOTS = 1024 };
 enum { MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
 enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };

@@ -1,0 +1,181 @@
+"""Capture steps: a foot goes where the body can come to rest over it.
+
+With the whole body's angular momentum H the body comes to rest over
+
+    c + v / omega + spin (H_y, -H_x) / (m z omega),
+
+the capture point as if H, too, were gone there. Where it leaves the feet, one of them becomes the
+swing foot and goes to where that point will be when the foot is down; pressure stays under the
+other foot meanwhile, from which the point runs away as e^(omega t).
+"""
+
+from math import atan2, cos, exp, pi, sin, sqrt
+from typing import Literal
+
+import mujoco
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours import support
+from rotctl.behaviours.scene import Scene, Step
+from rotctl.behaviours.support import Point
+from rotctl.control.task import Tasks
+from rotctl.linear import product
+from rotctl.mechanics.model import ROOT_BODY, Model, body_id
+from rotctl.rotations import Array, about_up
+from rotctl.settings import STRICT, NonNegative, Positive
+
+KEY = "behaviour.stages.tasks.bodies"
+DOWN = 0.5  # of a swing, from which on a touch ends it
+LATE = 1.5  # swings, after which one ends that met no ground
+REACH_DOWN = 0.85  # of a swing, from which on the foot
+UNDER = 0.03  # [m] is wanted so far under the ground: it meets it with some speed
+SOONEST = 0.05  # [s] the shortest time to go that a swing is steered with
+STAGGERED = 0.15  # [m] feet so far one before the other: the one behind swings
+
+
+@validated(frozen=True, config=STRICT)
+class Stepping:
+    """Swing a foot to the capture point: point; and turn it to where the pelvis faces: attitude.
+
+    A foot that does not swing has no weight here.
+
+    Attributes:
+        bodies: the left foot and the right one.
+        margin: that the capture point may be outside the feet [m].
+        spin: share of the angular momentum that the step is to catch [-].
+        time: that a swing takes [s].
+        lift: of the foot in its middle [m].
+        height: of the task's point above the ground when the foot stands [m].
+        over: that the foot goes beyond the capture point [m].
+        reach: furthest from the other foot, but for the width [m].
+        width: of the stance at least, from foot to foot; legs do not cross [m].
+        aside: capture points further to a side than this are followed by that side's foot [m].
+    """
+
+    law: Literal["step"]
+    bodies: tuple[str, str]
+    margin: NonNegative
+    spin: NonNegative
+    time: Positive
+    lift: NonNegative
+    height: NonNegative
+    over: NonNegative
+    reach: Positive
+    width: NonNegative
+    aside: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        self._feet(model)
+
+    def next(self, scene: Scene) -> Step:
+        """The step of this instant, from that of the control step before."""
+        step, model, state = scene.step, scene.model, scene.state
+        touching = state.contacts.body.tolist()
+        if step.swing:
+            gone = state.time - step.begin
+            down = gone > DOWN * self.time and step.swing in touching
+            ends = down or gone > LATE * self.time
+            return Step() if ends else step
+        left, right = self._feet(model)
+        if not {left, right} & set(touching):
+            return step
+        corners = support.hull(support.ends(model, state.data, (left, right)))
+        hangs = any(support.lifted(model, state, foot) for foot in (left, right))
+        if not hangs and support.outside(corners, self.capture_point(scene)) < self.margin:
+            return step
+        swing = self._swing(scene, touching)
+        return Step(swing, right if swing == left else left, state.time)
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set what the swing foot should do."""
+        step, body, data = scene.step, int(task["body"]), scene.state.data
+        if step.swing != body:
+            task["weight"] = 0.0
+            return
+        if kind == "attitude":
+            x, y = support.forward(scene.state, ROOT_BODY)
+            task["target"] = about_up(atan2(y, x))
+            return
+        place = data.xpos[body] + product(data.xmat[body].reshape(3, 3), task["point"])
+        velocity = _velocity(scene, body, place)
+        gone = min((scene.state.time - step.begin) / self.time, 1.0)
+        left = self.time * (1.0 - gone)
+        x, y = self.landing(scene, left)
+        px, py, _ = place.tolist()
+        vx, vy, _ = velocity.tolist()
+        soon = max(left, SOONEST)
+        task["acceleration"] = [arrival(x - px, vx, soon), arrival(y - py, vy, soon), 0.0]
+        over = self.lift * sin(pi * gone) - (UNDER if gone > REACH_DOWN else 0.0)
+        task["target"][:3] = [px, py, scene.model.ground.height(px, py) + self.height + over]
+        task["velocity"] = [vx, vy, self.lift * pi / self.time * cos(pi * gone)]
+
+    def landing(self, scene: Scene, left: float) -> Point:
+        """Where the middle of the swing foot should be [m], `left` [s] before it is down."""
+        model, state, stance = scene.model, scene.state, scene.step.stance
+        ends = support.ends(model, state.data, (stance,))
+        fx, fy = middle = support.middle(ends)
+        x, y = self.capture_point(scene)
+        px, py = support.within(support.hull(ends), middle, (x, y), 0.0)
+        grown = exp(support.pendulum_rate(model, state) * left)
+        dx, dy = px + grown * (x - px) - fx, py + grown * (y - py) - fy
+        far = sqrt(dx * dx + dy * dy)
+        beyond = 1.0 + self.over / far if far > 0.0 else 1.0
+        ahead, aside = _turned(beyond * dx, beyond * dy, support.forward(state, ROOT_BODY), -1.0)
+        share = min(1.0, self.reach / (sqrt(ahead * ahead + aside * aside) or 1.0))
+        side = 1.0 if scene.step.swing == self._feet(model)[0] else -1.0
+        aside = side * max(side * share * aside, self.width)
+        dx, dy = _turned(share * ahead, aside, support.forward(state, ROOT_BODY), 1.0)
+        return fx + dx, fy + dy
+
+    def capture_point(self, scene: Scene) -> Point:
+        """Where the body comes to rest, its angular momentum gone, seen from above [m]."""
+        model, momentum = scene.model, scene.state.momentum
+        rate = support.pendulum_rate(model, scene.state)
+        x, y = support.capture_point(scene.state, rate)
+        # m z omega = m g / omega
+        share = self.spin * rate / (model.mass * -float(model.gravity[2]))
+        return x + share * float(momentum.angular[1]), y - share * float(momentum.angular[0])
+
+    def _swing(self, scene: Scene, touching: list[int]) -> int:
+        """The foot to swing: never the only one that stands."""
+        model, state = scene.model, scene.state
+        left, right = feet = self._feet(model)
+        (lx, ly), (rx, ry) = (support.middle(support.ends(model, state.data, (f,))) for f in feet)
+        x, y = self.capture_point(scene)
+        forward = support.forward(state, ROOT_BODY)
+        _, aside = _turned(x - 0.5 * (lx + rx), y - 0.5 * (ly + ry), forward, -1.0)
+        near, far = (left, right) if aside > 0.0 else (right, left)
+        if left not in touching or right not in touching:
+            return right if left in touching else left
+        if abs(aside) > self.aside:
+            return near
+        ahead, _ = _turned(lx - rx, ly - ry, forward, -1.0)
+        if abs(ahead) > STAGGERED:
+            to_left = (lx - x) ** 2 + (ly - y) ** 2
+            to_right = (rx - x) ** 2 + (ry - y) ** 2
+            return left if to_left > to_right else right
+        return far
+
+    def _feet(self, model: Model) -> tuple[int, int]:
+        left, right = self.bodies
+        return body_id(model.mj, left, KEY), body_id(model.mj, right, KEY)
+
+
+def arrival(way: float, speed: float, time: float) -> float:
+    """Acceleration [m/s2] to be at rest after a way [m] and a time [s], the least in the square."""
+    return 6.0 * way / time**2 - 4.0 * speed / time
+
+
+def _velocity(scene: Scene, body: int, place: Array) -> Array:
+    """Of a point of a body (3,) [m/s]."""
+    jacobian = np.zeros((3, scene.model.mj.nv))
+    mujoco.mj_jac(scene.model.mj, scene.state.data, jacobian, None, place, body)
+    return product(jacobian, scene.state.velocity)
+
+
+def _turned(x: float, y: float, forward: Point, sense: float) -> Point:
+    """A level vector turned as +x is to `forward` (sense 1), or back (-1)."""
+    cosine, sine = forward[0], sense * forward[1]
+    return x * cosine - y * sine, x * sine + y * cosine

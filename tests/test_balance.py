@@ -1,0 +1,203 @@
+"""Steps: the support against other geometry, where a foot goes, and who stands by them."""
+
+from itertools import pairwise
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline
+from scipy.spatial import ConvexHull
+
+from rotctl.behaviours import support
+from rotctl.behaviours.scene import Step
+from rotctl.behaviours.stepping import arrival
+from rotctl.config import load
+from rotctl.mechanics.state import read
+from rotctl.run import in_memory
+from rotctl.scenario import build
+from rotctl.simulation.start import place
+from rotctl.summary import summarise
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return build(load(["behaviour=stand_step", "seed=2000"]))
+
+
+@pytest.fixture
+def standing(scenario):
+    """Data of a standing character that does not move."""
+    model, behaviour = scenario.model, scenario.behaviour
+    data = mujoco.MjData(model.mj)
+    place(model, data, scenario.start, behaviour.start(0.0), behaviour.axes)
+    return data
+
+
+def law(scenario):
+    return scenario.config.behaviour.tasks["swing"].aim
+
+
+def feet(scenario):
+    return [scenario.model.mj.body(name).id for name in ("foot_l", "foot_r")]
+
+
+def scene_of(scenario, data, velocity=(0.0, 0.0, 0.0), spin=(0.0, 0.0, 0.0), step=None):
+    """A character that moves as one piece, with a velocity of its centre of mass and a spin."""
+    mj = scenario.model.mj
+    mujoco.mj_forward(mj, data)
+    arm = data.qpos[:3] - data.subtree_com[1]
+    data.qvel[:] = 0.0
+    data.qvel[:3] = velocity + np.cross(spin, arm)
+    data.qvel[3:6] = data.xmat[1].reshape(3, 3).T @ spin
+    mujoco.mj_forward(mj, data)
+    state = read(scenario.model, data)
+    return SimpleNamespace(model=scenario.model, state=state, step=step or Step())
+
+
+# ---------------------------------------------------------------- the support
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_how_far_a_point_is_outside_is_that_of_another_hull(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(8, 2))
+    corners = support.hull([tuple(p) for p in points])
+    hull = ConvexHull(points)
+    assert len(corners) == len(hull.vertices)
+    for point in rng.normal(size=(20, 2)) * 2.0:
+        truth = (hull.equations[:, :2] @ point + hull.equations[:, 2]).max()
+        assert support.outside(corners, tuple(point)) == pytest.approx(truth, abs=1e-12)
+
+
+def test_a_foot_is_lifted_once_all_of_it_is_clear(scenario, standing):
+    left, _ = feet(scenario)
+    state = scene_of(scenario, standing).state
+    assert not support.lifted(scenario.model, state, left)
+    for up, clear in ((0.028, False), (0.034, True)):
+        data = mujoco.MjData(scenario.model.mj)
+        data.qpos[:] = standing.qpos
+        data.qpos[2] += up
+        found = scene_of(scenario, data).state
+        gap = min(
+            mujoco.mj_geomDistance(scenario.model.mj, data, 0, geom, 1.0, None)
+            for geom in np.flatnonzero(scenario.model.mj.geom_bodyid == left)
+            if scenario.model.mj.geom_contype[geom]
+        )
+        assert (gap > support.CLEAR) == clear
+        assert support.lifted(scenario.model, found, left) == clear
+
+
+# ---------------------------------------------------------------- where the foot goes
+
+
+def test_the_body_comes_to_rest_over_its_capture_point(scenario, standing):
+    """A pendulum of constant height whose angular momentum a short moment takes away, pressed at
+    the capture point from then on, stops there."""
+    scene = scene_of(scenario, standing, (0.3, -0.2, 0.0), (0.4, 0.9, 0.0))
+    momentum, mass = scene.state.momentum, scenario.model.mass
+    x, y = law(scenario).capture_point(scene)
+    height = momentum.com[2]
+    rate2 = 9.81 / height
+    brief = 1e-6
+
+    def rates(t, s):
+        taken = -momentum.angular / brief if t < brief else np.zeros(3)
+        # About the centre of mass: dH/dt = (p - c) x f, with f up m g and p on the ground.
+        ax = rate2 * (s[0] - x) - taken[1] / (mass * height)
+        ay = rate2 * (s[1] - y) + taken[0] / (mass * height)
+        return [s[2], s[3], ax, ay]
+
+    first = [*momentum.com[:2], *momentum.com_velocity[:2]]
+    early = solve_ivp(rates, (0.0, brief), first, rtol=1e-10, atol=1e-12)
+    end = solve_ivp(rates, (brief, 1.5), early.y[:, -1], rtol=1e-10, atol=1e-12).y[:, -1]
+    assert end[:2] == pytest.approx([x, y], abs=3e-3)
+    assert end[2:] == pytest.approx([0.0, 0.0], abs=1e-2)
+
+
+def test_the_foot_goes_where_the_point_will_be_and_a_little_further(scenario, standing):
+    """The point runs away from the pressure under the other foot, by its equation of motion."""
+    left, right = feet(scenario)
+    scene = scene_of(scenario, standing, (0.9, 0.1, 0.0), step=Step(left, right, 0.0))
+    data, aim = standing, law(scenario)
+    ends = support.ends(scenario.model, data, [right])
+    pressure = support.within(support.hull(ends), support.middle(ends), aim.capture_point(scene), 0)
+    rate = np.sqrt(9.81 / scene.state.momentum.com[2])
+    run = solve_ivp(
+        lambda t, xi: rate * (xi - np.array(pressure)),
+        (0.0, 0.12),
+        aim.capture_point(scene),
+        rtol=1e-10,
+    )
+    middle = np.array(support.middle(ends))
+    way = run.y[:, -1] - middle
+    goal = middle + way * (1.0 + aim.over / np.linalg.norm(way))
+    assert aim.landing(scene, 0.12) == pytest.approx(tuple(goal), abs=1e-6)
+
+
+@pytest.mark.parametrize("side", [0, 1], ids=["left", "right"])
+@pytest.mark.parametrize("heading", [0.0, 1.3, -2.8])
+@pytest.mark.parametrize("seed", range(5))
+def test_legs_do_not_cross_and_no_foot_goes_further_than_legs_reach(
+    scenario, standing, side, heading, seed
+):
+    swing, stance = feet(scenario)[:: 1 - 2 * side]
+    turn = np.array([np.cos(heading / 2), 0.0, 0.0, np.sin(heading / 2)])
+    mujoco.mju_mulQuat(standing.qpos[3:7], turn, standing.qpos[3:7].copy())
+    velocity = np.append(np.random.default_rng(seed).normal(size=2) * 1.5, 0.0)
+    scene = scene_of(scenario, standing, velocity, step=Step(swing, stance, 0.0))
+    aim, data = law(scenario), standing
+    at = np.array(aim.landing(scene, 0.1))
+    middle = np.array(support.middle(support.ends(scenario.model, data, [stance])))
+    outward = np.array([-np.sin(heading), np.cos(heading)]) * (1 - 2 * side)
+    far = np.linalg.norm(at - middle)
+    assert far <= np.hypot(aim.reach, aim.width) + 1e-9
+    assert (at - middle) @ outward >= aim.width - 0.01  # the pelvis is tilted and turned a little
+
+
+@pytest.mark.parametrize(("way", "speed"), [(0.4, 0.0), (-0.2, 1.5), (0.0, -2.0)])
+def test_who_does_as_a_swing_is_told_is_at_rest_there_in_time(way, speed):
+    """The law over and again is the cubic from here to rest there, as that is the least effort."""
+    time, end = 0.18, 0.01
+    run = solve_ivp(
+        lambda t, s: [s[1], arrival(way - s[0], s[1], time - t)],
+        (0.0, time - end),
+        [0.0, speed],
+        rtol=1e-10,
+        atol=1e-12,
+    ).y[:, -1]
+    cubic = CubicHermiteSpline([0.0, time], [0.0, way], [speed, 0.0])
+    wanted = [float(cubic(time - end)), float(cubic(time - end, 1))]
+    assert run.tolist() == pytest.approx(wanted, abs=1e-7)
+
+
+# ---------------------------------------------------------------- who stands by steps
+
+
+def stood(behaviour, direction, impulse, seed):
+    """Its summary, and how many steps it took."""
+    push = ["disturbance=push", "disturbance.time=[0.5,0.5]"] if impulse else []
+    aimed = [f"disturbance.impulse={impulse}", f"disturbance.direction=[{direction},{direction}]"]
+    overrides = [*push, *aimed] if push else []
+    scenario = build(load([f"behaviour={behaviour}", f"seed={seed}", "duration=5", *overrides]))
+    swings, number = [], feet(scenario)
+    buffer, breakdown = in_memory(
+        scenario, stop=lambda moment: swings.append(moment.command.held_out[number]) or False
+    )
+    steps = sum((now & ~before).any() for before, now in pairwise([swings[0] & False, *swings]))
+    return summarise(scenario, buffer, breakdown, 1.0), steps
+
+
+@pytest.mark.parametrize("seed", [2000, 2001])
+def test_who_is_left_alone_takes_no_step(seed):
+    summary, steps = stood("stand_step", 0, 0, seed)
+    assert (summary["success"], steps) == (True, 0)
+
+
+@pytest.mark.parametrize("direction", [0, 45, 135, 180, 225])
+def test_a_push_that_fells_who_stands_is_stepped_out_of(direction):
+    assert not stood("stand", direction, 38, 2001)[0]["success"]
+    summary, steps = stood("stand_step", direction, 38, 2001)
+    assert summary["success"]
+    assert steps >= 1
