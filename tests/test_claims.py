@@ -74,6 +74,15 @@ def test_the_median_of_a_quantity_near(value, expected):
     assert (found.measured.value, found.measured.low) == (value, value)
 
 
+@pytest.mark.parametrize(("few", "expected"), [(4, REPRODUCED), (6, NOT_REPRODUCED)])
+def test_a_low_quantile_says_of_nearly_all_runs(few, expected):
+    """95 of 100 reach 10, whatever the median is."""
+    asked = Claim("c", "turn", 10.0, 0.0, "paper", "at_least", quantile=0.05)
+    found = judge(asked, runs([False] * 101, turn=[3.0] * few + [40.0] * (101 - few)), ["seed"])
+    assert found.verdict == expected
+    assert found.measured.value == {4: 40.0, 6: 3.0}[few]
+
+
 def test_values_that_are_no_numbers_are_left_out():
     found = judge(
         claim("speed", 1.0, 0.1), runs([True, False, False], speed=[1.0, None, float("inf")]), []
@@ -123,8 +132,16 @@ def test_one_verdict_for_several():
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"tolerance": -0.1}, {"comparison": "about"}, {"expected": float("nan")}]
+    "wrong",
+    [
+        {"tolerance": -0.1},
+        {"comparison": "about"},
+        {"expected": float("nan")},
+        {"metric": "turn", "quantile": 1.0},
+        {"quantile": 0.05},
+    ],
 )
 def test_a_claim_is_checked(wrong):
+    given = {"id": "c", "metric": "success_rate", "expected": 0.9, "tolerance": 0.0, "source": "x"}
     with pytest.raises(ValidationError):
-        claim(**wrong)
+        Claim(**(given | wrong))

@@ -1,11 +1,15 @@
-"""The adult's visual geoms only fill its outline."""
+"""Visual geoms only fill a character's outline; cameras keep to its size."""
 
 import mujoco
 import numpy as np
 import pytest
 
+from rotctl import scenario
 from rotctl.config import load
 from rotctl.mechanics.model import build, lowest_and_highest
+from rotctl.report import gl
+from rotctl.report.scene import opened
+from rotctl.simulation.episode import Episode
 
 
 @pytest.fixture(scope="module")
@@ -31,3 +35,16 @@ def test_visual_geoms_do_not_make_the_adult_taller(adult):
     assert lowest_and_highest(adult, data, character) == pytest.approx(
         lowest_and_highest(adult, data, solid), abs=1e-6
     )
+
+
+def test_a_camera_is_as_near_as_who_it_sees_is_small_and_sees_who_lies_from_above(drawing):
+    cameras = {}
+    for name in ("turn_over", "baby_roll_over", "forward_roll_1"):
+        parts = scenario.build(load([f"behaviour={name}"]))
+        start = Episode(parts).data.qpos
+        with opened(parts.model.mj, gl.backend(), 64, 48) as stage:
+            stage.fit(start[None])
+            cameras[name] = stage.draw(start)[1]
+    small, tall, tucked = (cameras[n] for n in ("baby_roll_over", "turn_over", "forward_roll_1"))
+    assert 0.3 < small.distance / tall.distance < 0.6  # 0.74 of 1.75 m
+    assert small.view.elevation == tall.view.elevation < 2.0 * tucked.view.elevation < 0.0

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.rates import wilson
@@ -26,7 +27,8 @@ class Claim:
     """One sentence of a paper, or of ours, as numbers.
 
     Attributes:
-        metric: `success_rate`, or a column of the summary, of which the median counts.
+        metric: `success_rate`, or a column of the summary.
+        quantile: of that column over the runs, which counts: 0.5 is the median; no rate has one.
         expected: the value, in the unit of the metric.
         tolerance: how far the wrong side of it still counts; either side, if `near`.
         comparison: which side of `expected` is the right one.
@@ -41,6 +43,11 @@ class Claim:
     comparison: Literal["near", "at_least", "at_most"] = "near"
     note: str = ""
     where: Where = field(default_factory=dict)
+    quantile: Annotated[float, Field(gt=0, lt=1)] = 0.5
+
+    def __post_init__(self) -> None:
+        if self.metric == SUCCESS_RATE and self.quantile != 0.5:
+            raise ValueError(f"{SUCCESS_RATE} is one number of all runs and has no quantile")
 
     def gap(self, value: float) -> float:
         """How far a value is on the wrong side, in the unit of the metric; negative: not at all."""
@@ -50,10 +57,10 @@ class Claim:
 
 @dataclass(frozen=True)
 class Measured:
-    """A rate, or the median of a quantity.
+    """A rate, or a quantile of a quantity, the median if nothing else is said.
 
     Attributes:
-        value: None if nothing was measured.
+        value: the rate or the quantile; None if nothing was measured.
         low: Wilson's 95 % interval of a rate, quartiles of the rest.
         high: see `low`.
         runs: how many it comes from.
@@ -100,7 +107,7 @@ def judge(claim: Claim, table: "pd.DataFrame", keys: Sequence[str]) -> Judged:
         remarks.append(f"{missing} of {len(about)} runs have no result")
     if len(done) and claim.metric not in (SUCCESS_RATE, *done.columns):
         remarks.append(f"the summary has no {claim.metric!r}")
-    found = measured(done, claim.metric)
+    found = measured(done, claim.metric, claim.quantile)
     return Judged(claim, _verdict(claim, found, missing), found, missing, tuple(remarks))
 
 
@@ -115,7 +122,7 @@ def picked(table: "pd.DataFrame", where: Mapping[str, Any]) -> "pd.DataFrame":
     return table
 
 
-def measured(done: "pd.DataFrame", metric: str) -> Measured:
+def measured(done: "pd.DataFrame", metric: str, quantile: float = 0.5) -> Measured:
     """A metric over runs with results; values that are no finite numbers are left out."""
     if metric == SUCCESS_RATE:
         n, succeeded = len(done), int(done["success"].astype(bool).sum())
@@ -129,8 +136,8 @@ def measured(done: "pd.DataFrame", metric: str) -> Measured:
         return Measured()
     import numpy as np
 
-    low, middle, high = np.quantile(values, [0.25, 0.5, 0.75]).tolist()
-    return Measured(middle, low, high, len(values))
+    low, value, high = np.quantile(values, [0.25, quantile, 0.75]).tolist()
+    return Measured(value, low, high, len(values))
 
 
 def overall(verdicts: Sequence[str]) -> str:

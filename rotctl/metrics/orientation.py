@@ -29,6 +29,7 @@ class OrientationCriteria:
     Attributes:
         error: of the trunk's turn against the target [deg].
         rest: how long at the end it holds [s].
+        within: from the start, that it is within the error for good [s].
         level: tilt of the long axis meanwhile [deg].
         sat_up: that the long axis may rise on the way [deg]: sitting up is no turning over.
         speed: of the centre of mass at the end [m/s].
@@ -38,6 +39,7 @@ class OrientationCriteria:
     kind: Literal["orientation"]
     error: Positive
     rest: Positive
+    within: Positive
     level: Positive
     sat_up: Positive
     speed: Positive
@@ -110,6 +112,7 @@ def failure(metrics: OrientationMetrics, criteria: OrientationCriteria, duration
         short += f", but {duration - m.arrival:.2f} s before the end only"
     rules = (
         (m.error_end < c.error, short),
+        (m.arrival <= c.within, f"turned in {m.arrival:.1f} s, is to in {c.within:g}"),
         (m.sat_up < c.sat_up, f"sat up by {m.sat_up:.0f} deg on the way"),
         (m.level_end < c.level, f"lies {m.level_end:.0f} deg off level at the end"),
         (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),

@@ -74,8 +74,8 @@ def filmstrip(
     files.require_ending(out, ".png")
     backend = gl.backend()  # first of all: importing MuJoCo raises where MUJOCO_GL makes no sense
     rows = _rows(log, frames, start, end)
-    pictures, shown = _drawn(log, rows, FRAME, backend)
-    sheet = _sheet(log, pictures, shown, columns)
+    pictures, shown, weight = _drawn(log, rows, FRAME, backend)
+    sheet = _sheet(log, pictures, shown, columns, weight)
     write(out, sheet)
 
 
@@ -87,7 +87,7 @@ def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
         LogError: the log is damaged or its model is not safe to draw.
     """
     backend = gl.backend()
-    pictures, _ = _drawn(log, _rows(log, frames, None, None), size, backend)
+    pictures, _, _ = _drawn(log, _rows(log, frames, None, None), size, backend)
     row = Image.new("RGB", (frames * (size[0] + _THIN) - _THIN, size[1]), PAPER)
     for i, picture in enumerate(pictures):
         row.paste(picture, (i * (size[0] + _THIN), 0))
@@ -96,8 +96,8 @@ def strip(log: RunLog, frames: int, size: tuple[int, int]) -> bytes:
 
 def _drawn(
     log: RunLog, rows: list[int], size: tuple[int, int], backend: str
-) -> tuple[list[Image.Image], list[Moment]]:
-    """Frames of these rows of the log, and what they show."""
+) -> tuple[list[Image.Image], list[Moment], float]:
+    """Frames of these rows of the log, what they show, and the arrow of the body's weight [m]."""
     from rotctl.report import scene
 
     model = stored_model.load(log)
@@ -109,7 +109,7 @@ def _drawn(
             draw(stage, state, moment, size)
             for state, moment in zip(states[rows], shown, strict=True)
         ]
-    return pictures, shown
+        return pictures, shown, FORCE_SCALE * stage.size
 
 
 # ---------------------------------------------------------------- which moments
@@ -137,7 +137,11 @@ def _two_turns(time: Array, turns: Array) -> tuple[int, int]:
 
 
 def _sheet(
-    log: RunLog, pictures: Sequence[Image.Image], moments: Sequence[Moment], columns: int
+    log: RunLog,
+    pictures: Sequence[Image.Image],
+    moments: Sequence[Moment],
+    columns: int,
+    weight: float,
 ) -> Image.Image:
     wide, high = FRAME[0] + _GAP, FRAME[1] + _CAPTION + _GAP
     rows = -(-len(pictures) // columns)
@@ -149,7 +153,7 @@ def _sheet(
         x, y = _MARGIN + i % columns * wide, _HEADER + i // columns * high
         sheet.paste(picture, (x, y))
         _caption(pen, x, y + FRAME[1] + 5, moment)
-    _legend(pen, _MARGIN, size[0] - _MARGIN, size[1] - _FOOTER)
+    _legend(pen, _MARGIN, size[0] - _MARGIN, size[1] - _FOOTER, weight)
     return sheet
 
 
@@ -168,14 +172,14 @@ def _caption(pen: ImageDraw.ImageDraw, x: float, y: float, moment: Moment) -> No
     pen.text((x + FRAME[0] - 2, y), f"blend {moment.blend:.2f}", SOFT, font, anchor="ra")
 
 
-def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float) -> None:
+def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float, weight: float) -> None:
     font = typeface(15)
     for used, text in ((True, "contact used by the controller"), (False, "contact left out")):
         dot(pen, x + 6, y + 10, 5.5, used)
         pen.text((x + 18, y), text, SOFT, font)
         x += 18 + pen.textlength(text, font) + 26
     arrow(pen, np.array([x, y + 10.0]), np.array([x + 30, y + 10.0]), USED, 1.3)
-    pen.text((x + 38, y), f"ground force (body weight: {FORCE_SCALE:g} m)", SOFT, font)
+    pen.text((x + 38, y), f"ground force (body weight: {weight:.2g} m)", SOFT, font)
     pen.text((right, y), "left limbs are darker", SOFT, font, anchor="ra")
 
 

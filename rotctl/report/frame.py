@@ -13,9 +13,9 @@ from rotctl.rotations import Array
 if TYPE_CHECKING:
     from rotctl.report.scene import Camera, Scene
 
-FORCE_SCALE = 0.45  # [m] length of an arrow as large as the body's weight
+FORCE_SCALE = 0.45  # [m] length of an arrow as large as an adult's weight
 MAX_FORCE = 5.0  # [body weights] longer arrows are cut
-MARK_SIDE = 0.42  # [m] towards the camera from the character
+MARK_SIDE = 0.42  # [m] towards the camera from an adult
 PAPER, INK, SOFT = (255, 255, 255), (28, 34, 44), (104, 114, 128)
 GOOD, BAD = (22, 122, 76), (190, 32, 38)
 MOODS = {True: GOOD, False: BAD, None: SOFT}  # of a run's verdict
@@ -70,7 +70,7 @@ def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) ->
     layer = Image.new("RGBA", picture.size)
     pen = ImageDraw.Draw(layer)
     labels = _metre_marks(pen, stage, camera, scale)
-    _contacts(pen, camera, moment, stage.weight, scale)
+    _contacts(pen, camera, moment, stage, scale)
     picture.paste(layer, mask=layer)
     if picture.size != size:
         picture = picture.resize(size, Image.Resampling.BOX)
@@ -86,7 +86,7 @@ def _metre_marks(
     """Ticks on the ground at whole metres of the way; returns where which label goes."""
     c, s = np.cos(stage.heading), np.sin(stage.heading)
     x, y, _ = camera.target
-    along, near = c * x + s * y, c * y - s * x - max(MARK_SIDE, stage.beside)
+    along, near = c * x + s * y, c * y - s * x - max(MARK_SIDE * stage.size, stage.beside)
     labels = []
     for metre in range(int(np.floor(along)) - 3, int(np.ceil(along)) + 4):
         places = [(c * metre - s * side, s * metre + c * side) for side in (near, near + 0.1)]
@@ -100,14 +100,14 @@ def _metre_marks(
 
 
 def _contacts(
-    pen: ImageDraw.ImageDraw, camera: "Camera", moment: Moment, weight: float, scale: float
+    pen: ImageDraw.ImageDraw, camera: "Camera", moment: Moment, stage: "Scene", scale: float
 ) -> None:
     """Dots at contacts and arrows along their forces, over the picture: never hidden by it."""
     near = np.linalg.norm(moment.contacts - camera.target, axis=1) < 0.7 * camera.distance
-    forces = moment.forces[near] / max(weight, 1.0)
+    forces = moment.forces[near] / max(stage.weight, 1.0)
     forces *= np.minimum(1.0, MAX_FORCE / np.linalg.norm(forces, axis=1, keepdims=True).clip(1e-9))
     feet = camera.pixels(moment.contacts[near])
-    tips = camera.pixels(moment.contacts[near] + FORCE_SCALE * forces)
+    tips = camera.pixels(moment.contacts[near] + FORCE_SCALE * stage.size * forces)
     used = moment.used[near].astype(bool)
     for chosen in (False, True):
         for foot, tip in zip(feet[used == chosen], tips[used == chosen], strict=True):

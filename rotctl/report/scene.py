@@ -20,7 +20,8 @@ Pixels = NDArray[np.uint8]
 
 FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
 MARGIN = 1.25  # of the picture around the character
-LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked character from filling the picture
+LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked adult from filling the picture
+ADULT_WEIGHT = 686.7  # [N]
 GROUND_LINE = 0.9  # how far below the middle the ground is, in half heights
 SKY_TOP = (0.655, 0.780, 0.900)
 SKY_LOW = (0.945, 0.962, 0.975)
@@ -53,7 +54,9 @@ class View:
 
 SIDE = View(radians(90.0), radians(-7.0))  # along +y, so that +x is to the right; a little down
 AHEAD = View(radians(150.0), radians(-16.0))  # from ahead and above, so that a long body is seen
+ABOVE = View(radians(150.0), radians(-32.0))  # so that it is seen which way a lying body faces
 LONG = 1.5  # times as wide across the way as along it, and a body is seen from ahead
+FLAT = 0.5  # times as high as long, and it lies
 
 
 @dataclass(frozen=True)
@@ -121,23 +124,29 @@ class Scene:
         Args:
             heading: of the way, which goes to the right of the picture [rad].
         """
-        halves, low, high = np.zeros((len(states), 2)), 0.0, 0.0
+        halves, low, high = np.zeros((len(states), 3)), 0.0, 0.0
         for i, state in enumerate(states):
             self._pose(state)
             least, most = self._outline()
             y = float(character.centre_of_mass(self._data)[1])
             ground = self.ground(0.5 * (least[0] + most[0]), y)
-            halves[i] = 0.5 * (most - least)[:2]
+            halves[i] = 0.5 * (most - least)
             low, high = min(low, least[2] - ground), max(high, most[2] - ground)
         self.heading = heading
         turn = np.abs([[np.cos(heading), np.sin(heading)], [np.sin(heading), np.cos(heading)]])
+        height, halves = halves[:, 2].mean(), halves[:, :2]
         along, across = turn @ halves.mean(axis=0)
-        chosen = AHEAD if across > LONG * along else SIDE
+        lies = height < FLAT * halves.max(axis=1).mean()
+        chosen = ABOVE if lies else AHEAD if across > LONG * along else SIDE
         self._view_in = View(chosen.azimuth + heading, chosen.elevation)
         self._sky = _gradient(self._view_in, self.width, self.height)
         self.beside = float((halves @ turn[1]).max())
-        wide = float((halves @ np.abs(self._view_in.axes[0, :2])).max())
-        half = max(0.5 * (high - low), wide * self.height / self.width, LEAST_HALF_HEIGHT)
+        right, up, into = np.abs(self._view_in.axes)
+        wide = float((halves @ right[:2]).max())
+        if lies:
+            low -= float((halves @ into[:2]).max()) * into[2] / up[2]  # the near side
+        least_half = LEAST_HALF_HEIGHT * self.size
+        half = max(0.5 * (high - low), wide * self.height / self.width, least_half)
         self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)
         self._centre = low + GROUND_LINE * half
 
@@ -171,6 +180,11 @@ class Scene:
     def weight(self) -> float:
         """Of the character [N]."""
         return character.weight(self.model)
+
+    @property
+    def size(self) -> float:
+        """Of the character, 1 for an adult's weight [-]: what is drawn beside it keeps pace."""
+        return float(np.cbrt(self.weight / ADULT_WEIGHT)) or 1.0
 
     def ground(self, x: float, y: float) -> float:
         """Height of the ground at world (x, y) [m], in the state drawn last; 0 beside it."""

@@ -55,7 +55,7 @@ def _environment() -> Environment:
     )
     helpers: dict[str, Callable[..., Any]] = {
         name: getattr(words, name)
-        for name in ("quantity", "number", "with_unit", "spread", "expectation", "count")
+        for name in ("quantity", "claimed", "number", "with_unit", "spread", "expectation", "count")
     }
     made.globals.update(helpers, looks=LOOKS, success_rate=SUCCESS_RATE)
     return made

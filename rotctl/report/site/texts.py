@@ -12,7 +12,7 @@ from xml.etree import ElementTree as Xml
 
 from rotctl.metrics.claims import NOT_TESTED, REPRODUCED
 from rotctl.report.site.study import Line, Study, answer, by_quantity, lines, tally, warnings
-from rotctl.report.site.words import expectation, quantity, spread, with_unit
+from rotctl.report.site.words import claimed, expectation, spread, with_unit
 from rotctl.report.title import plain
 
 COLUMNS = (
@@ -73,7 +73,7 @@ def _case(suite: Xml.Element, line: Line) -> None:
 
 def _sentence(line: Line) -> str:
     judged, claim = line.judged, line.judged.claim
-    said = f"{judged.verdict}: {quantity(claim.metric)} {expectation(claim)} expected"
+    said = f"{judged.verdict}: {claimed(claim)} {expectation(claim)} expected"
     return f"{said}, {_value(line)} measured over {judged.measured.runs} runs"
 
 
@@ -100,7 +100,7 @@ def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
 
 def _table(found: Sequence[Line]) -> list[str]:
     rows = [
-        (line.judged.claim.id, quantity(line.judged.claim.metric), expectation(line.judged.claim))
+        (line.judged.claim.id, claimed(line.judged.claim), expectation(line.judged.claim))
         + (_value(line), str(line.judged.measured.runs), line.judged.verdict)
         for line in found
     ]

@@ -27,6 +27,12 @@ def quantity(metric: str) -> str:
     return QUANTITIES.get(metric, (plain(metric), ""))[0]
 
 
+def claimed(claim: Claim) -> str:
+    """What a claim is about: a quantity, and which quantile of it where that is not the median."""
+    share = "" if claim.quantile == 0.5 else f", {100 * claim.quantile:g} % quantile"
+    return quantity(claim.metric) + share
+
+
 def number(value: float | None, metric: str = "") -> str:
     """A number to three digits, at most three decimals, without its unit; rates in percent."""
     if value is None or value != value:
@@ -45,7 +51,7 @@ def with_unit(text: str, metric: str) -> str:
 
 
 def spread(found: Measured, metric: str) -> str:
-    """`median [low, high]` without a unit."""
+    """`value [low, high]` without a unit."""
     if found.value is None:
         return NOTHING
     middle, low, high = (number(v, metric) for v in (found.value, found.low, found.high))
