@@ -7,9 +7,10 @@ cannot execute code or look anything up.
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from functools import cache, lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, get_type_hints
 
 import yaml
 from hydra import compose, initialize_config_dir
@@ -18,12 +19,12 @@ from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
-from pydantic import Field, Strict
+from pydantic import Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl import documents
 from rotctl.behaviours import BehaviourSettings
-from rotctl.checked import adapter, brief, checked, clip, unknown_key
+from rotctl.checked import brief, checked, clip, unknown_key
 from rotctl.control import ControllerSettings
 from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
@@ -38,6 +39,7 @@ from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
 from rotctl.plain import NOTHING, Way, dotted, leaves, member, put, way
+from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
 
@@ -125,6 +127,36 @@ def check(data: Any) -> Config:
     return found
 
 
+def changed(config: Config, parts: Mapping[str, Any]) -> Config:
+    """The same with other plain data for some of its parts; what stays is not checked again.
+
+    Args:
+        parts: by their names, such as `controller` or `seed`.
+
+    Raises:
+        InputError: one line for the first thing that is wrong with them.
+    """
+    made: dict[str, Any] = {name: _part(config, name, data) for name, data in parts.items()}
+    return replace(config, **made)
+
+
+@kept(most=1000)
+def _part(config: Config, name: str, data: Any) -> Any:
+    try:
+        found = _adapter(name).validate_python(data)
+    except ValidationError:
+        return getattr(check({**to_dict(config), name: data}), name)  # which tells what is wrong
+    for absurd in (_absurd_text, _absurd_number):
+        _refuse({name: data}, absurd)
+    return found
+
+
+@cache
+def _adapter(name: str) -> TypeAdapter[Any]:
+    """Of the type of a config's part."""
+    return TypeAdapter(get_type_hints(Config, include_extras=True)[name])
+
+
 def _refuse(data: Any, absurd: Callable[[Way, Any], str]) -> None:
     """Raises InputError for the first value that no run, picture or terminal could use."""
     for parts, value in leaves(data):
@@ -147,7 +179,12 @@ def _absurd_text(parts: Way, value: Any) -> str:
 
 
 def _short(text: object) -> bool:
-    return str(text).isprintable() and len(str(text)) <= LONGEST_TEXT
+    return len(str(text)) <= LONGEST_TEXT and _printable(str(text))
+
+
+@lru_cache(maxsize=10_000)  # of the same keys, again and again
+def _printable(text: str) -> bool:
+    return text.isprintable()
 
 
 def _absurd_number(parts: Way, value: Any) -> str:
@@ -156,9 +193,14 @@ def _absurd_number(parts: Way, value: Any) -> str:
 
 
 def to_dict(config: Config) -> dict[str, Any]:
-    """The config as plain data."""
-    plain: dict[str, Any] = adapter(Config).dump_python(config)  # asdict takes 2 ms
-    return plain
+    """The config as plain data, which nobody may change."""
+    parts = {part.name: getattr(config, part.name) for part in fields(config)}
+    return {name: _plain_part(name, part) for name, part in parts.items()}
+
+
+@kept(most=1000)
+def _plain_part(name: str, part: Any) -> Any:
+    return _adapter(name).dump_python(part)
 
 
 def to_yaml(config: Config) -> str:

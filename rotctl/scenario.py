@@ -21,7 +21,8 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.terrain import FASTEST
-from rotctl.motion import load_clip
+from rotctl.motion import ReferenceSettings, load_clip
+from rotctl.same import kept
 from rotctl.settings import ends
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
@@ -119,7 +120,7 @@ def _stepper(physics: Physics, model: Model) -> Stepper:
 
 
 # Nobody changes a model, so runs that differ in their seed or gains share one.
-_model = lru_cache(maxsize=8)(models.build)
+_model = kept(most=8)(lru_cache(maxsize=8)(models.build))
 
 
 def model_of(config: Config) -> Model:
@@ -154,20 +155,33 @@ def run_id(config: Config, model: Model) -> str:
         InputError: there is no such clip.
     """
     parts = {
-        "config": _acting(to_dict(config)),
+        "config": {name: _hash_of_part(part) for name, part in to_dict(config).items()},
         "schema": SCHEMA_VERSION,
-        "model": _without_looks(model.mjcf),
+        "model": _hash_without_looks(model.mjcf),
     }
     reference = getattr(config.behaviour, "reference", None)
     if reference:
-        parts["clip"] = asdict(load_clip(reference.clip))  # a name or path says not what is in it
-    canonical = json.dumps(parts, sort_keys=True)
-    return hashlib.sha256(canonical.encode()).hexdigest()[:12]
+        parts["clip"] = _hash_of_clip(reference)  # a name or path says not what is in it
+    return _hash(parts)[:12]
+
+
+def _hash(plain: Any) -> str:
+    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
+
+
+@kept(most=1000)
+def _hash_of_part(part: Any) -> str:
+    return _hash(_acting(part))
 
 
 @lru_cache(maxsize=8)
-def _without_looks(mjcf: str) -> str:
-    return re.sub(r' rgba="[^"]*"', "", mjcf)
+def _hash_without_looks(mjcf: str) -> str:
+    return _hash(re.sub(r' rgba="[^"]*"', "", mjcf))
+
+
+@kept(most=100)
+def _hash_of_clip(reference: ReferenceSettings) -> str:
+    return _hash(asdict(load_clip(reference.clip)))
 
 
 def _acting(part: Any) -> Any:

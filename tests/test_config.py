@@ -173,7 +173,12 @@ def plain():
     ("key", "value", "message"),
     [
         # Choices.
-        ("controller.supervisor", "no", "\"no\": must be 'as_written', 'modified' or 'none'"),
+        (
+            "controller.supervisor",
+            "no",
+            "\"no\": must be 'as_written', 'modified', 'minimal', 'convex_hull', 'simulated', "
+            "'simulated_free' or 'none'",
+        ),
         ("physics.jacobian", "sparse", "\"sparse\": must be 'dense'"),
         # Types.
         ("seed", "", '"": must be a valid integer'),

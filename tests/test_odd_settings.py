@@ -1,15 +1,21 @@
 """Settings that can be read and mean nothing: one line that names the value and what is valid."""
 
 import copy
+from typing import get_args, get_type_hints
 
 import pytest
 
+from rotctl.behaviours.aims import Aim
 from rotctl.config import check, composed
+from rotctl.control.kinds import KINDS
 from rotctl.errors import LONGEST, InputError, LogError
 from rotctl.scenario import build
 from rotctl.simulation.episode import Episode
 
 STAND = ["behaviour=stand", "duration=1"]
+LAWS = ", ".join(
+    repr(get_args(get_type_hints(law)["law"])[0]) for law in get_args(get_args(Aim)[0])
+)
 PUSHED = [*STAND, "disturbance=push"]
 BODIES = (
     "pelvis, waist, chest, head, upper_arm_l, forearm_l, upper_arm_r, forearm_r, thigh_l, shin_l, "
@@ -35,14 +41,13 @@ def complaint(chosen, changes):
     ("chosen", "changes", "message"),
     [
         (STAND, {"behaviour.tasks.balance.kind": "jump"},
-         "behaviour.tasks.balance: no kind 'jump'; valid: linear, spin, point, attitude, limits"),
+         f"behaviour.tasks.balance: no kind 'jump'; valid: {', '.join(KINDS)}"),
         (STAND, {"behaviour.tasks.pelvis.point": [0.1, 0.0, 0.0]},
          "behaviour.tasks.pelvis: a task of kind attitude has no point"),
         (STAND, {"behaviour.tasks.pelvis.body": "tail"},
          f"tasks.pelvis.body names the unknown body 'tail'; bodies: {BODIES}"),
         (STAND, {"behaviour.tasks.balance.aim.law": "jump"},
-         "behaviour.tasks.balance.aim.law=\"jump\": no such law; valid: 'hold', 'upright', "
-         "'ground', 'turn', 'capture', 'lunge'"),
+         f"behaviour.tasks.balance.aim.law=\"jump\": no such law; valid: {LAWS}"),
         (STAND, {"behaviour.tasks.balance.aim.bodies": []},
          "behaviour: a task is to balance over bodies that cannot stand"),
         (STAND, {"behaviour.tasks.spin.aim.task": "spin"},

@@ -42,6 +42,10 @@ SUMMARY_KEYS = [
     "ground_force_p99",
     "ground_force_peak",
     "airborne",
+    "jerk",
+    "chatter",
+    "recovery",
+    "recovered",
     "solver_failures",
     "angular_velocity_commanded",
     "speed_commanded",
@@ -359,6 +363,10 @@ def test_a_run_without_a_single_good_state_has_nulls(tmp_path):
         "ground_force_p99",
         "ground_force_peak",
         "airborne",
+        "jerk",
+        "chatter",
+        "recovery",
+        "recovered",
         "torque_p99_fraction",
     }
     assert RunLog.open(result.folder / LOG_NAME).steps == 0

@@ -51,7 +51,10 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
-    runs = planned(points(experiments.matrix(arguments.overrides)))
+    watched = None if not arguments.quiet else True  # None: only on a terminal
+    matrix = experiments.matrix(arguments.overrides)
+    with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
+        runs = planned(bar)
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         if arguments.dry_run:
             print(without_running(runs, arguments.out, engine.workers))
@@ -59,7 +62,6 @@ def sweep(arguments: argparse.Namespace) -> int:
         with locked(arguments.out):
             if experiment := experiments.named(arguments.overrides):
                 experiments.copy_into(arguments.out, experiment)
-            watched = None if not arguments.quiet else True  # None: only on a terminal
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
                 there = plan(runs, arguments.out, arguments.strict, looking.update)
             if not arguments.quiet:

@@ -1,26 +1,46 @@
 """Overrides in Hydra's sweep syntax -> the points of the grid, each with its checked config.
 
-Hydra composes a config in tenths of a second, which is too slow for a thousand points. So it
-composes once for each choice of groups, and single values are set on its result.
+Hydra composes a config in tenths of a second, and to check one takes milliseconds: too slow for a
+hundred thousand points. So Hydra composes once for each choice of groups, single values are set
+on its result, and of that only the parts they are in are checked, once for each value.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import islice, product
 from math import prod
 from typing import Any
 
-from hydra.core.override_parser.types import Glob, Override, OverrideType
+from hydra.core.override_parser.types import Glob, Override, OverrideType, Transformer
 
 from rotctl import plain
-from rotctl.config import Config, check, composed, to_dict
+from rotctl.config import Config, changed, check, composed, to_dict
 from rotctl.errors import InputError
 from rotctl.listing import choices
 from rotctl.overrides import parsed
 from rotctl.results.keys import value_at
 
 MOST_POINTS = 100_000
+Bases = dict[tuple[str, ...], Config]
+Parts = dict[tuple[Any, ...], Any]
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """One override with one value.
+
+    Attributes:
+        text: in Hydra's syntax; key: that it is about.
+        way: to the value that it sets, if setting is all it does.
+        value: see `way`.
+        ordered: whether it may matter what comes before and after it.
+    """
+
+    text: str
+    key: str
+    way: plain.Way | None
+    value: Any
+    ordered: bool
 
 
 @dataclass(frozen=True)
@@ -29,17 +49,18 @@ class Point:
 
     Attributes:
         overrides: one value each; `config.load` would make the same config of them.
+        keys: that they are about.
     """
 
     overrides: tuple[str, ...]
+    keys: tuple[str, ...]
     config: Config
 
     @property
     def values(self) -> dict[str, Any]:
         """Overridden key -> its value in the config, or the name of the choice of a group."""
         data = to_dict(self.config)
-        keys = (str(_parsed(override).key_or_group) for override in self.overrides)
-        return {key: value_at(data, key) for key in keys}
+        return {key: value_at(data, key) for key in self.keys}
 
 
 def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
@@ -52,23 +73,28 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
         InputError: the first thing that is wrong, in one line.
     """
     grids = [[_values(override) for override in grid] for grid in matrix]
-    if sum(prod(map(len, grid)) for grid in grids) > MOST_POINTS:
+    if count(grids) > MOST_POINTS:
         raise InputError(f"the sweep has more than {MOST_POINTS} points; make several sweeps")
-    bases: dict[tuple[str, ...], dict[str, Any]] = {}
+    bases: Bases = {}
+    parts: Parts = {}
     for grid in grids:
-        for overrides in product(*grid):
-            yield Point(overrides, _config(overrides, bases))
+        for assignments in product(*grid):
+            texts = tuple(one.text for one in assignments)
+            keys = tuple(one.key for one in assignments)
+            yield Point(texts, keys, _config(assignments, bases, parts))
 
 
-_parsed = cache(parsed)
+def count(grids: Sequence[Sequence[Sequence[Any]]]) -> int:
+    """How many points there are."""
+    return sum(prod(map(len, grid)) for grid in grids)
 
 
-def _values(override: str) -> list[str]:
+def _values(override: str) -> list[Assignment]:
     """The single overrides that one with several values stands for."""
     found = parsed(override)
     key = str(found.key_or_group)
     if not found.is_sweep_override():
-        return [override]
+        return [_assignment(override, found)]
     if not found.is_discrete_sweep():
         raise InputError(f"{override}: has no steps; write {key}=range(start,stop,step)")
     pattern = found.value()
@@ -78,41 +104,66 @@ def _values(override: str) -> list[str]:
         if not names:
             some = f"no choice matches; valid: {', '.join(valid)}" if valid else "no such group"
             raise InputError(f"{override}: {some}")
-        return [f"{found.get_key_element()}={name}" for name in names]
-    values = list(islice(found.sweep_string_iterator(), MOST_POINTS + 1))
-    if not values:
+        return [_read(f"{found.get_key_element()}={name}") for name in names]
+    texts = list(islice(found.sweep_string_iterator(), MOST_POINTS + 1))
+    if not texts:
         raise InputError(f"{override}: has no values")
-    return [f"{found.get_key_element()}={value}" for value in values]
+    element = found.get_key_element()
+    way, ordered = _way(found)
+    values = list(islice(found.sweep_iterator(Transformer.identity), len(texts)))
+    return [
+        Assignment(f"{element}={text}", key, way, value, ordered)
+        if way is not None and type(value) in (bool, int, float)
+        else _read(f"{element}={text}")
+        for text, value in zip(texts, values, strict=True)
+    ]
 
 
-def _config(overrides: tuple[str, ...], bases: dict[tuple[str, ...], dict[str, Any]]) -> Config:
+def _read(override: str) -> Assignment:
+    return _assignment(override, parsed(override))
+
+
+def _assignment(text: str, found: Override) -> Assignment:
+    way, ordered = _way(found)
+    value = found.value()
+    if isinstance(value, dict):
+        way = None
+        ordered = True
+    return Assignment(text, str(found.key_or_group), way, value, ordered)
+
+
+def _way(found: Override) -> tuple[plain.Way | None, bool]:
+    """The way to the value that an override sets, if that is all; whether its order may matter."""
+    group = bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
+    if found.type != OverrideType.CHANGE or found.package or group:
+        return None, bool(found.package) or not group
+    return plain.way(str(found.key_or_group)), False
+
+
+def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Config:
     """As `config.load`, but quick where only plain values differ from an earlier point."""
-    ways = [_way(override) for override in overrides]
-    composing = tuple(o for o, parts in zip(overrides, ways, strict=True) if parts is None)
-    setting = {parts: _parsed(o).value() for o, parts in zip(overrides, ways, strict=True) if parts}
-    if any(_parsed(override).package or not _is_group(override) for override in composing):
-        return check(composed(list(overrides)))  # their order may matter
-    if composing not in bases:
-        bases[composing] = composed(list(composing))
-    data = bases[composing]
-    for parts, value in setting.items():
-        before = plain.find(data, parts)
-        if before is plain.NOTHING or isinstance(before, dict):
-            return check(composed(list(overrides)))  # a new key, or an error for Hydra to tell
-        data = plain.put(data, parts, value)
-    return check(data)
-
-
-def _way(override: str) -> plain.Way | None:
-    """The way to the value that an override sets, if setting is all it does."""
-    found = _parsed(override)
-    if found.type != OverrideType.CHANGE or found.package or _is_group(override):
-        return None
-    if isinstance(found.value(), dict):
-        return None
-    return plain.way(str(found.key_or_group))
-
-
-def _is_group(override: str) -> bool:
-    found: Override = _parsed(override)
-    return bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
+    texts = [one.text for one in assignments]
+    if any(one.ordered for one in assignments):
+        return check(composed(texts))
+    choosing = tuple(one.text for one in assignments if one.way is None)
+    if choosing not in bases:
+        bases[choosing] = check(composed(list(choosing)))
+    base = bases[choosing]
+    set_by: dict[str, list[Assignment]] = {}
+    for one in assignments:
+        if one.way is not None:
+            set_by.setdefault(str(one.way[0]), []).append(one)
+    data = to_dict(base)
+    made = {}
+    for name, setting in set_by.items():
+        key = (choosing, *(one.text for one in setting))
+        if key not in parts:
+            found = data
+            for one in setting:
+                before = plain.find(found, one.way or ())
+                if before is plain.NOTHING or isinstance(before, dict):
+                    return check(composed(texts))  # a new key, or an error for Hydra to tell
+                found = plain.put(found, one.way or (), one.value)
+            parts[key] = found[name]
+        made[name] = parts[key]
+    return changed(base, made)
