@@ -10,6 +10,7 @@ from rotctl.errors import InputError
 from rotctl.listing import shipped
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.judge import COLUMNS
+from rotctl.overrides import parsed
 from rotctl.results.experiments import copies, experiment, matrix, names, read
 from rotctl.sweep.points import points
 
@@ -29,10 +30,10 @@ TABLE_1 = {  # [rev/s], [m/s]
 
 @pytest.mark.parametrize("name", names())
 def test_each_experiment_plans(name):
-    found = list(points(matrix([f"+experiment={name}"])))
-    seeds = {point.config.seed for point in found}
-    assert seeds
-    assert max(seeds) < 1_000_000  # judging seeds
+    found = list(points(matrix([f"+experiment={name}", "seed=0"])))  # any other differs in it alone
+    assert found
+    seeds = list(parsed(f"seed={experiment(name).seeds}").value().range())
+    assert 0 <= min(seeds) <= max(seeds) < 1_000_000  # judging seeds
     assert len({claim.id for claim in experiment(name).claims}) == len(experiment(name).claims)
 
 

@@ -42,6 +42,7 @@ def test_other_commands(line, capsys):
     assert capsys.readouterr().out
 
 
+@pytest.mark.exact
 def test_the_sample_is_what_everybody_gets():
     """The bits of a run are the same everywhere, so its figures are; `make readme` renews them."""
     if library() is None or libm() != LIBM:

@@ -23,6 +23,7 @@ sys.path.insert(0, str(ROOT))
 import hatch_build  # noqa: E402
 
 pytestmark = [
+    pytest.mark.exact,
     pytest.mark.skipif(
         library() is None,
         reason="the compiled library is not built here (no C compiler at installation)",
