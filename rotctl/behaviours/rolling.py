@@ -53,6 +53,8 @@ class RollingSettings:
         speed: commanded in-plane speed of the centre of mass [m/s].
         roll_about: the trunk's axis that is kept on the rolling axis, see `FACING`.
         heading: of the way it rolls, from +x towards +y [deg].
+        angular_momentum: commanded in-plane in place of the angular velocity [kg m2/s]; AV by
+            default, section 7.
         align_with_slope: whether that speed is along the slope (section 6) or level.
     """
 
@@ -65,6 +67,7 @@ class RollingSettings:
     align_with_slope: Annotated[bool, Strict()]
     poses: Poses | None = None
     reference: ReferenceSettings | None = None
+    angular_momentum: Finite | None = None
     source: str = ""
     description: str = ""
 
@@ -134,8 +137,20 @@ class Rolling:
         self._velocity = settings.speed * (math.cos(along) * axes[0] + math.sin(along) * UP)
         self._poses = _poses(settings, model)
         gains = gains_of(control, self.tasks)
-        self._tasks = np.concatenate([task(kind(name).number, gains[name], axes) for name in gains])
-        self._tasks["velocity"] = self._velocity, self._angular_velocity
+        by_momentum = settings.angular_momentum is not None
+        if by_momentum and measured.measure == "root":
+            raise InputError(
+                "behaviour.angular_momentum: excursion=root controls the root's angular velocity"
+            )
+        kinds = ("linear", "angular_momentum" if by_momentum else "spin")
+        self._tasks = np.concatenate(
+            [task(kind(k).number, gains[n], axes) for k, n in zip(kinds, self.tasks, strict=True)]
+        )
+        rotation = (settings.angular_momentum or 0.0) * self._left
+        self._tasks["velocity"] = (
+            self._velocity,
+            rotation if by_momentum else self._angular_velocity,
+        )
         self._targets = self._tasks["target"][:, :3]  # views: cheaper than fields, step by step
         self._velocities = self._tasks["velocity"]
         self._control, self._held_out = control, model.excluded

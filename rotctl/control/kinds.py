@@ -95,6 +95,18 @@ def spin(task: Tasks, model: Model, state: State) -> Rows:
     return Rows(rows, product(axes, rate), task["weight"], error)
 
 
+@_kind(momentum=True)
+def angular_momentum(task: Tasks, model: Model, state: State) -> Rows:
+    """The same by AM: velocity is H [kg m2/s] and its error acts as it is; weight 1/(N m)2."""
+    momentum, axes = state.momentum, task["axes"]
+    error = product(axes, task["target"][:3])
+    turning = product(axes, task["acceleration"]) + task["stiffness"] * error
+    slip = product(axes, task["velocity"] - momentum.angular)
+    rate = product(axes, product(momentum.inertia, product(turning, axes)))
+    rows = np.concatenate((np.zeros((3, 3)), axes), axis=1)
+    return Rows(rows, rate + task["damping"] * slip, task["weight"], error)
+
+
 @_kind(momentum=False)
 def point(task: Tasks, model: Model, state: State) -> Rows:
     """A point of a body. Target a place; weight 1/(m/s2)2."""

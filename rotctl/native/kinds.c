@@ -42,6 +42,28 @@ int rotctl_kind_spin(const Self* s, const mjData* d, const Reading* r, const Tas
   return 3;
 }
 
+int rotctl_kind_angular_momentum(const Self* s, const mjData* d, const Reading* r, const Task* t,
+                                 double* rows, double* wanted, double* weight, double* error) {
+  (void)s, (void)d;
+  double turning[3], world[3], rate[3], along[3], missing[3], slip[3];
+  rotate(error, t->axes, t->target);
+  rotate(turning, t->axes, t->acceleration);
+  for (int i = 0; i < 3; i++) {
+    turning[i] += t->stiffness[i] * error[i];
+    missing[i] = t->velocity[i] - r->angular[i];
+  }
+  rotate(slip, t->axes, missing);
+  rotate_back(world, t->axes, turning);
+  rotate(rate, r->inertia, world);
+  rotate(along, t->axes, rate);
+  for (int i = 0; i < 3; i++) {
+    wanted[i] = along[i] + t->damping[i] * slip[i];
+    weight[i] = t->weight[i];
+    for (int j = 0; j < 3; j++) rows[6 * i + j] = 0, rows[6 * i + 3 + j] = t->axes[3 * i + j];
+  }
+  return 3;
+}
+
 // Rows of a Jacobian J (3, nv) along the axes, and what they should give, less dJ/dt qdot.
 static int motion(const Self* s, const mjData* d, const Task* t, const double* J,
                   const double* J_dot, const double* missing, double* rows, double* wanted,
