@@ -82,7 +82,7 @@ def look_at(scenario, steps, look, every=1):
         count += 1
 
     shown = Shown(scenario.model, scenario.controller, some)
-    return list(islice(Episode(replace(scenario, controller=shown)), steps))
+    return list(islice(Episode(replace(scenario, controller=shown, observer=shown)), steps))
 
 
 class Asking:
