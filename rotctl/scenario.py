@@ -98,12 +98,13 @@ def _check(config: Config, model: Model) -> None:
     """Raises InputError where criteria judge other motions or bodies, or a push comes too late."""
     rolls = isinstance(config.behaviour, RollingSettings)
     if rolls != (config.criteria.kind == "rolling"):
-        wanted = "criteria=rolling" if rolls else "criteria=standing, landing or orientation"
+        wanted = "criteria=rolling" if rolls else "criteria=standing, landing, flip or orientation"
         raise InputError(
             f"criteria={config.criteria.name} does not judge behaviour={config.behaviour.name}, "
             f"a behaviour of kind {config.behaviour.kind}; choose {wanted}"
         )
-    for name in getattr(config.criteria, "feet", ()):
+    stands = getattr(config.criteria, "landing", config.criteria)
+    for name in getattr(stands, "feet", ()):
         models.body_id(model.mj, name, "criteria.feet")
     push = config.disturbance
     if isinstance(push, Push) and ends(push.time)[0] >= config.duration:

@@ -39,11 +39,9 @@ TUCK = {
 LONG = {"shoulder_y": 3.05, "ankle_y": -0.85, "elbow": 0.02, "knee": 0.02}
 ARCHED = LONG | {"hip_y": -0.3, "waist_y": -0.2, "chest_y": -0.2}
 HEAD_FIRST = {
-    "land": LONG,
+    "entry": {"pose": LONG, "attitude": 0.0, "bodies": ["forearm"]},
     "tuck": TUCK,
     "stretch": ARCHED,
-    "attitude": 0.0,
-    "bodies": ["forearm"],
     "opening": 0.35,
     "change": 0.15,
 }
@@ -98,9 +96,9 @@ def fly(scenario, momentum, height, up, pitch, across=(0.0, 0.0)):
     """
     model, episode = scenario.model, Episode(scenario)
     data, law = episode.data, scenario.behaviour._laws["flight"]
-    sense = 1.0 if law.landing >= 0.0 else -1.0
+    sense, entry = law._sense, law._usual
     wanted = np.array([across[0], sense * momentum, across[1]])
-    spawn(model, data, law.pose(-0.6), sense * pitch, height, up, wanted)
+    spawn(model, data, law.pose(-0.6, entry), sense * pitch, height, up, wanted)
     first = None
     solid = is_character(model.mj)[model.mj.geom_bodyid] & (model.mj.geom_contype > 0)
     for moment in episode:
@@ -109,7 +107,7 @@ def fly(scenario, momentum, height, up, pitch, across=(0.0, 0.0)):
         if lowest_and_highest(model.mj, data, solid)[0] <= 0.0:
             break
     front = moment.state.momentum.root_rotation[:, 0]
-    missed = atan2(-front[2], front[0]) - law.landing
+    missed = atan2(-front[2], front[0]) - law._target - entry.attitude
     error = degrees((sense * missed + pi) % tau - pi)
     return Landed(error, moment.state.time, abs(now - first).max() / abs(first).max())
 

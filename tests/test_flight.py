@@ -1,7 +1,5 @@
 """Flight: where a body lands that chooses its shape alone, against mechanics that know no law."""
 
-from types import SimpleNamespace
-
 import mujoco
 import numpy as np
 import pytest
@@ -85,7 +83,7 @@ def test_it_lands_at_its_attitude_over_a_range_of_momenta(turns, least, height, 
     rng, flights = np.random.default_rng(7), 4
     scenario = flier(turns)
     law = scenario.behaviour._laws["flight"]
-    most = min(3.0 * least, 0.93 * abs(law.landing) / (1.7 * law._slowness.min()))
+    most = min(3.0 * least, 0.93 * abs(law._target) / (1.7 * law._slowness.min()))
     errors = []
     for momentum in np.geomspace(least, most, flights):
         landed = fly(flier(turns), momentum, height, up, rng.uniform(0.0, 0.4))
@@ -100,16 +98,12 @@ def test_the_time_to_the_landing_is_that_of_a_fall(dive):
     for up, height in ((2.5, 11.0), (-1.0, 6.0)):
         law = dive.behaviour._laws["flight"]
         data = mujoco.MjData(dive.model.mj)
-        spawn(dive.model, data, law.pose(1.0), 0.0, height, up, np.zeros(3))
+        spawn(dive.model, data, law.pose(1.0, law._usual), 0.0, height, up, np.zeros(3))
         mujoco.mj_forward(dive.model.mj, data)
-        told = law.time(_at(dive.model), data.subtree_com[1].tolist(), up)
-        while data.subtree_com[1, 2] > law.height:
+        told = law.time(up, height, law._usual)
+        while data.subtree_com[1, 2] > law._usual.height:
             mujoco.mj_step(dive.model.mj, data)
         assert data.time == pytest.approx(told, abs=0.01)
-
-
-def _at(model):
-    return SimpleNamespace(model=model)
 
 
 def test_too_little_momentum_tucks_all_the_way_and_falls_short():

@@ -21,7 +21,7 @@ from rotctl.errors import InputError
 from rotctl.linear import solve
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model, body_ids
-from rotctl.rotations import about_up, advance, dot
+from rotctl.rotations import about_up, advance, advanced, dot, rotation_between
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -84,6 +84,24 @@ class Bow:
         forward, left, _ = scene.axes
         facing = about_up(atan2(float(forward[1]), float(forward[0])))
         task["target"] = advance(facing, radians(self.angle) * left)
+
+
+@validated(frozen=True, config=STRICT)
+class Plane:
+    """A body turns in the plane across left, as far as it likes: attitude."""
+
+    law: Literal["plane"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target: the present attitude, less what turns its left away."""
+        body, left = int(task["body"]), scene.axes[1]
+        side = scene.state.data.xmat[body].reshape(3, 3)[:, 1]
+        task["target"] = advanced(
+            scene.state.data.xquat[body].tolist(), rotation_between(side.tolist(), left.tolist())
+        )
 
 
 @validated(frozen=True, config=STRICT)
@@ -255,6 +273,7 @@ Aim = Annotated[
     Hold
     | Upright
     | Bow
+    | Plane
     | Pose
     | Ground
     | Turn

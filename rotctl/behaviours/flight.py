@@ -17,11 +17,11 @@ from typing import TypeVar
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.landing import Contact, Landing, LandingSettings
 from rotctl.behaviours.scene import Scene
-from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
+from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
 from rotctl.motion import Turn, make_pose
@@ -31,6 +31,7 @@ from rotctl.settings import STRICT, Finite, Fraction, Positive
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
 HALVINGS = 14  # of the amounts that are possible: 0.0001
+GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
 LEAST_TIME = 1e-3  # [s] to the landing
 SETTLING = 4.0  # [periods] in which the amount comes near, so that it does not overshoot
 
@@ -38,30 +39,47 @@ Share = TypeVar("Share", float, Array)
 
 
 @validated(frozen=True, config=STRICT)
+class EntrySettings:
+    """A landing that is always alike.
+
+    Attributes:
+        pose: by joint name [rad].
+        attitude: of the pelvis about left from upright [deg], past the whole or half turns that
+            the behaviour's target is.
+        bodies: that land.
+    """
+
+    pose: dict[str, Turn]
+    attitude: Finite
+    bodies: tuple[str, ...]
+
+
+@validated(frozen=True, config=STRICT)
 class FlightSettings:
     """How a body flies.
 
     Attributes:
-        land: pose that it lands in, by joint name [rad].
-        tuck: tightest pose; stretch: longest.
+        tuck: tightest pose, by joint name [rad]; stretch: longest.
         tightest, longest: shares of the way to them that it may go [-].
-        attitude: of the pelvis on landing, from upright in the sense of forward [deg], past
-            the whole turns that the behaviour's target is.
-        bodies: that land.
         opening: to the landing pose begins so long before it [s].
         change: from the landing pose to the tuck, or from the pose at take-off to the line of
             shapes, takes so long [s].
+        entry: how it lands, if always alike;
+        feet: if on its feet, as its motion then asks for.
     """
 
-    land: dict[str, Turn]
     tuck: dict[str, Turn]
     stretch: dict[str, Turn]
-    attitude: Finite
-    bodies: tuple[str, ...]
     opening: Positive
     change: Positive
     tightest: Fraction = 1.0
     longest: Fraction = 1.0
+    entry: EntrySettings | None = None
+    feet: LandingSettings | None = None
+
+    def __post_init__(self) -> None:
+        if (self.entry is None) == (self.feet is None):
+            raise ValueError("give either entry or feet, not both and not neither")
 
 
 @dataclass(frozen=True)
@@ -100,53 +118,60 @@ class Flight:
             InputError: a joint or a body is not there.
         """
         self._settings, self._model, self._axis = settings, model, axis
-        self._sense = 1.0 if target >= 0.0 else -1.0
-        self.landing = target + radians(settings.attitude)
-        self._line = [
-            make_pose(model, pose, f"{key}.{name}")
-            for name, pose in (
-                ("stretch", settings.stretch),
-                ("land", settings.land),
-                ("tuck", settings.tuck),
-            )
-        ]
+        self._target, self._sense = target, 1.0 if target >= 0.0 else -1.0
+        self._tuck = make_pose(model, settings.tuck, f"{key}.tuck")
+        self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
+        self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
+        if settings.entry:
+            self._usual = self._entry(settings.entry, f"{key}.entry")
+        elif self._feet:
+            self._usual = self._feet.at(0.0)
         self._shapes = Shapes(model)
         self._slowness = np.array(
-            [1.0 / self._shapes.inertia(self.pose(a), axis) for a in AMOUNTS.tolist()]
+            [1.0 / self._shapes.inertia(self.pose(a, self._usual), axis) for a in AMOUNTS.tolist()]
         )
-        standing = np.isin(model.mj.geom_bodyid, body_ids(model.mj, settings.bodies, key))
-        self.height = self._height(standing & (model.mj.geom_contype > 0))
 
-    def _height(self, landing: NDArray[np.bool_]) -> float:
-        """Of the centre of mass over what lands, in the landing pose and attitude [m]."""
+    def _entry(self, entry: EntrySettings, key: str) -> Contact:
+        """The body as it lands."""
         mj, data = self._model.mj, mujoco.MjData(self._model.mj)
-        data.qpos[3:7] = quaternion_from_rotation_vector(self.landing * self._axis)
-        data.qpos[self._model.angles] = self._line[1]
+        attitude, pose = radians(entry.attitude), make_pose(self._model, entry.pose, f"{key}.pose")
+        data.qpos[3:7] = quaternion_from_rotation_vector((self._target + attitude) * self._axis)
+        data.qpos[self._model.angles] = pose
         mujoco.mj_kinematics(mj, data)
         mujoco.mj_comPos(mj, data)
-        return float(data.subtree_com[1, 2] - lowest_and_highest(mj, data, landing)[0])
+        bodies = np.isin(mj.geom_bodyid, body_ids(mj, entry.bodies, f"{key}.bodies"))
+        low, _ = lowest_and_highest(mj, data, bodies & (mj.geom_contype > 0))
+        return Contact(attitude, pose, 0.0, float(data.subtree_com[ROOT_BODY, 2]) - low)
 
-    def pose(self, amount: float) -> Array:
+    def contact(self, momentum: float, forward: float, up: float, over: float) -> Contact:
+        """The body as it is to land.
+
+        Args:
+            momentum: about left [kg m2/s].
+            forward, up: velocity of the centre of mass [m/s], and
+            over: its height over the ground where it lands [m], at one and the same instant.
+        """
+        if self._feet is None:
+            return self._usual
+        fall = -float(self._model.gravity[2])
+        height = self._usual.height
+        down = sqrt(up * up + 2.0 * fall * max(over - height, 0.0))
+        return self._feet.at(self._feet.offset(momentum, forward, down, height))
+
+    def pose(self, amount: float, contact: Contact) -> Array:
         """The shape (nu,) of an amount of tuck [rad]."""
-        stretch, land, tuck = self._line
-        end = tuck if amount >= 0.0 else stretch
-        return land + abs(amount) * (end - land)
+        end = self._tuck if amount >= 0.0 else self._stretch
+        return np.asarray(contact.pose + abs(amount) * (end - contact.pose))
 
-    def time_left(self, scene: Scene) -> float:
-        """To the landing, as things fly [s]."""
-        momentum = scene.state.momentum
-        return self.time(scene, momentum.com.tolist(), float(momentum.com_velocity[2]))
-
-    def time(self, scene: Scene, com: list[float], up: float) -> float:
+    def time(self, up: float, over: float, contact: Contact) -> float:
         """To the landing [s]: 2 v / g, [AlBorno2014], and more where it lands lower.
 
         Args:
-            com: place of the centre of mass [m]; up: its velocity [m/s].
+            up: velocity of the centre of mass [m/s]; over: its height over the ground [m].
         """
-        fall = -float(scene.model.gravity[2])
-        x, y, z = com
-        over = max(z - self.height - scene.model.ground.height(x, y), 0.0)
-        return max((up + sqrt(up * up + 2.0 * fall * over)) / fall, LEAST_TIME)
+        fall = -float(self._model.gravity[2])
+        higher = max(over - contact.height, 0.0)
+        return max((up + sqrt(up * up + 2.0 * fall * higher)) / fall, LEAST_TIME)
 
     def turned(self, scene: Scene) -> float:
         """theta: how far the pelvis has turned about left from upright [rad]."""
@@ -156,17 +181,28 @@ class Flight:
         drift = (angle - scene.excursion.phase + pi) % tau - pi
         return scene.excursion.phase + drift
 
-    def left_to_turn(self, scene: Scene) -> float:
+    def left_to_turn(self, scene: Scene, contact: Contact) -> float:
         """In the sense of the flight, beside what the change of shape does [rad]."""
         angles = scene.state.position[self._model.angles]
-        shape = self._shapes.turn(angles, self._line[1], self._axis)
-        return self._sense * (self.landing - self.turned(scene) - shape)
+        shape = self._shapes.turn(angles, contact.pose, self._axis)
+        return self._sense * (self._target + contact.attitude - self.turned(scene) - shape)
 
-    def momentum(self, scene: Scene, amount: float, time: float) -> float:
-        """About left, with which an amount of tuck turns what is left in a time [kg m2/s]."""
-        return (
-            self._sense * self.left_to_turn(scene) / (time * self.mean_slowness(amount, 0.0, time))
-        )
+    def planned(self, scene: Scene, amount: float, forward: float, up: float, high: float) -> float:
+        """Momentum about left with which an average tuck turns what is left [kg m2/s].
+
+        Args:
+            amount: of tuck, on average.
+            forward, up: velocity at take-off [m/s].
+            high: place of the centre of mass there over the floor that it stands on [m].
+        """
+        x, y = (scene.state.momentum.com + forward * up / GRAVITY * scene.axes[0])[:2].tolist()
+        over, momentum = high + scene.floor - scene.model.ground.height(x, y), 0.0
+        for _ in range(2):  # how it lands depends on its momentum, too
+            contact = self.contact(momentum, forward, up, over)
+            time = self.time(up, over, contact)
+            slowness = self.mean_slowness(amount, 0.0, time)
+            momentum = self._sense * self.left_to_turn(scene, contact) / (time * slowness)
+        return momentum
 
     def mean_slowness(self, amount: float, now: float, time: float) -> float:
         """Mean of 1/I until the landing [1/(kg m2)].
@@ -191,13 +227,20 @@ class Flight:
         settings = self._settings
         if before is None:
             return self.begin(scene.state)
-        time = self.time_left(scene)
+        momentum, (ahead, left, _) = scene.state.momentum, scene.axes
+        x, y, z = momentum.com.tolist()
+        turning, up = dot(momentum.angular, left), float(momentum.com_velocity[2])
+        over = z - scene.model.ground.height(x, y)
+        contact = self.contact(turning, dot(momentum.com_velocity, ahead), up, over)
+        time = self.time(up, over, contact)
         late = time < 0.5 * settings.change  # too late for another shape to turn much
-        held = before.held if late else self._amount(scene, before.amount, time)
+        need = 0.0 if late else self.left_to_turn(scene, contact)
+        turning *= self._sense
+        held = before.held if late else self._amount(need, turning, before.amount, time)
         wanted = held * _smooth(min(time / settings.opening, 1.0))
         amount, rate = self._towards(wanted, before, period)
         gone = (scene.state.time - scene.begin.time) / settings.change
-        pose = self.pose(amount)
+        pose = self.pose(amount, contact)
         pose += (1.0 - _smooth(min(gone, 1.0))) * (before.first - pose)
         return Aloft(amount, rate, held, before.first, pose, (pose - before.pose) / period)
 
@@ -208,10 +251,8 @@ class Flight:
         rate = now.rate + min(max(copysign(fastest, way) - now.rate, -most * period), most * period)
         return now.amount + rate * period, rate
 
-    def _amount(self, scene: Scene, now: float, time: float) -> float:
-        """Of tuck whose mean rate |H|/I over the time left turns what is left, by bisection."""
-        need = self.left_to_turn(scene)
-        momentum = self._sense * dot(scene.state.momentum.angular, scene.axes[1])
+    def _amount(self, need: float, momentum: float, now: float, time: float) -> float:
+        """Of tuck whose mean rate |H|/I over the time left makes the turn, by bisection."""
         low, high = -self._settings.longest, self._settings.tightest
 
         def falls_short(amount: float) -> bool:

@@ -6,9 +6,9 @@ time: neither too little nor too much, [AlBorno2014]. Velocity and angular momen
 there together, when the centre of mass has risen to where the legs end.
 """
 
+from math import sqrt
 from typing import Literal
 
-import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
@@ -18,6 +18,7 @@ from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import solve
 from rotctl.mechanics.model import Model, body_ids
+from rotctl.rotations import Array, dot
 from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 
@@ -54,23 +55,17 @@ class Lean:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
-        state, (ahead, *_) = scene.state, scene.axes
-        x, y, z = state.momentum.com.tolist()
-        task["acceleration"] = level(scene, self.bodies, self.gain, self.margin)
+        (ahead, left, _), momentum = scene.axes, scene.state.momentum
         if self.speed:
-            fx, fy = ahead[:2].tolist()
-            vx, vy, _ = state.momentum.com_velocity.tolist()
-            more = self.eager * (self.speed - fx * vx - fy * vy)
-            rate = support.pendulum_rate(scene.model, state)
-            px, py = x - more * fx / rate**2, y - more * fy / rate**2
-            corners, middle = feet(scene, self.bodies)
-            px, py = support.within(corners, middle, (px, py), self.margin)
-            push = rate * rate * (fx * (x - px) + fy * (y - py))
-            across = float(task["acceleration"][0]) * fx + float(task["acceleration"][1]) * fy
-            task["acceleration"] += (push - across) * ahead
-        above = z - scene.model.ground.height(x, y) - self.height
+            more = self.eager * (self.speed - dot(momentum.com_velocity, ahead))
+            along = pushed(scene, self.bodies, ahead, more, self.margin)
+        else:
+            along = captured(scene, self.bodies, ahead, self.gain, self.margin)
+        across = captured(scene, self.bodies, left, self.gain, self.margin)
+        task["acceleration"] = along * ahead + across * left
+        above = float(momentum.com[2]) - scene.floor - self.height
         down = min(max(self.steady * above, -self.sink), self.sink)
-        fall = float(state.momentum.com_velocity[2])
+        fall = float(momentum.com_velocity[2])
         task["acceleration"][2] = -self.eager * (down + fall)
 
 
@@ -80,7 +75,7 @@ class Launch:
 
     Attributes:
         bodies: that push.
-        margin: inside the support that the pressure keeps across the way [m].
+        gain, margin: as for `lean`, across the way.
         forward, up: velocity at take-off [m/s].
         height: of the centre of mass over the ground there [m].
         soonest: the time that is left counts as so much at least [s].
@@ -88,6 +83,7 @@ class Launch:
 
     law: Literal["launch"]
     bodies: tuple[str, ...]
+    gain: NonNegative
     margin: NonNegative
     forward: Finite
     up: Positive
@@ -105,15 +101,13 @@ class Launch:
         velocity = scene.state.momentum.com_velocity
         missing = self.forward * ahead - velocity
         missing[2] = self.up - float(velocity[2])
-        across = level(scene, self.bodies, 1.0, self.margin)
+        across = captured(scene, self.bodies, left, self.gain, self.margin)
         wanted = missing / time
-        wanted += float((across * left).sum() - (wanted * left).sum()) * left
-        task["acceleration"] = wanted
+        task["acceleration"] = wanted + (across - dot(wanted, left)) * left
 
     def left(self, scene: Scene) -> float:
         """Time to take-off [s], at the mean of the speed now and that at take-off."""
-        x, y, z = scene.state.momentum.com.tolist()
-        way = max(scene.model.ground.height(x, y) + self.height - z, 0.0)
+        way = max(scene.floor + self.height - float(scene.state.momentum.com[2]), 0.0)
         speed = max(float(scene.state.momentum.com_velocity[2]) + self.up, 0.5)
         return max(2.0 * way / speed, self.soonest)
 
@@ -147,18 +141,11 @@ class Whirl:
             raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
         if not isinstance(flight, Flight):
             raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
-        wanted = self.planned(scene, launch, flight)
-        along = float((momentum.angular * left).sum())
+        wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
+        along = dot(momentum.angular, left)
         rate = -self.calm * (momentum.angular - along * left)
         rate += (wanted - along) / launch.left(scene) * left
         task["acceleration"] = solve(momentum.inertia, rate)
-
-    def planned(self, scene: Scene, launch: Launch, flight: Flight) -> float:
-        """Angular momentum about left at take-off [kg m2/s]."""
-        x, y, _ = scene.state.momentum.com.tolist()
-        ground = scene.model.ground.height(x, y)
-        air = flight.time(scene, [x, y, ground + launch.height], launch.up)
-        return flight.momentum(scene, self.amount, air)
 
 
 def feet(scene: Scene, bodies: tuple[str, ...]) -> tuple[list[support.Point], support.Point]:
@@ -173,16 +160,39 @@ def leaning(scene: Scene, bodies: tuple[str, ...]) -> tuple[float, float]:
     _, (mx, my) = feet(scene, bodies)
     x, y, z = scene.state.momentum.com.tolist()
     fx, fy, _ = scene.axes[0].tolist()
-    return fx * (x - mx) + fy * (y - my), z - scene.model.ground.height(mx, my)
+    return fx * (x - mx) + fy * (y - my), z - scene.floor
 
 
-def level(scene: Scene, bodies: tuple[str, ...], gain: float, margin: float) -> np.ndarray:
-    """Level acceleration (3,) that keeps the capture point over the feet [m/s2]."""
+def captured(
+    scene: Scene, bodies: tuple[str, ...], way: Array, gain: float, margin: float
+) -> float:
+    """Acceleration along a level way (3,) that keeps the capture point over the feet [m/s2]."""
+    _, (mx, my) = feet(scene, bodies)
+    com, velocity = scene.state.momentum.com, scene.state.momentum.com_velocity
+    wx, wy, _ = way.tolist()
+    rate = pendulum_rate(scene)
+    off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
+    out = off + dot(velocity, way) / rate
+    return pushed(scene, bodies, way, rate * rate * (off - (1.0 + gain) * out), margin)
+
+
+def pushed(
+    scene: Scene, bodies: tuple[str, ...], way: Array, wanted: float, margin: float
+) -> float:
+    """What of an acceleration along a level way (3,) the feet can give [m/s2].
+
+    The ways are looked at one by one: pressure at the toes still balances from side to side.
+    """
     corners, (mx, my) = feet(scene, bodies)
-    rate = support.pendulum_rate(scene.model, scene.state)
-    x, y = support.capture_point(scene.state, rate)
-    reach = 1.0 + gain
-    wish = (mx + reach * (x - mx), my + reach * (y - my))
-    px, py = support.within(corners, (mx, my), wish, margin)
-    cx, cy, _ = scene.state.momentum.com.tolist()
-    return np.array([rate * rate * (cx - px), rate * rate * (cy - py), 0.0])
+    com, (wx, wy, _) = scene.state.momentum.com, way.tolist()
+    rate = pendulum_rate(scene)
+    off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
+    out = off - wanted / (rate * rate)
+    px, py = support.within(corners, (mx, my), (mx + out * wx, my + out * wy), margin)
+    return rate * rate * (off - wx * (px - mx) - wy * (py - my))
+
+
+def pendulum_rate(scene: Scene) -> float:
+    """Omega of the pendulum that stands on the floor [1/s], beside which there may be an abyss."""
+    height = float(scene.state.momentum.com[2]) - scene.floor
+    return sqrt(-float(scene.model.gravity[2]) / max(height, support.LEAST_HEIGHT))

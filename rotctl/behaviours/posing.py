@@ -95,9 +95,8 @@ class Rise:
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
-        x, y, z = scene.state.momentum.com.tolist()
-        first = float(scene.begin.com[2])
-        way = scene.model.ground.height(x, y) + self.height - first
+        z, first = float(scene.state.momentum.com[2]), float(scene.begin.com[2])
+        way = scene.floor + self.height - first
         way = copysign(max(abs(way), 1e-3), way)
         begin, finish = self.parts.T
         gone = ((z - first) / way - begin) / (finish - begin)

@@ -77,3 +77,11 @@ class Scene:
     airborne: float
     still: float
     step: Step
+
+    @property
+    def floor(self) -> float:
+        """Height of the ground that it stands on; without contacts of that below it [m]."""
+        ground = self.model.ground
+        found = [ground.height(x, y) for x, y, _ in self.state.contacts.position.tolist()]
+        x, y, _ = self.state.momentum.com.tolist()
+        return max(found) if found else ground.height(x, y)

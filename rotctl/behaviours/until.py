@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.launch import leaning
 from rotctl.behaviours.scene import Scene
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 
@@ -132,6 +132,26 @@ class Lands:
 
 
 @validated(frozen=True, config=STRICT)
+class Enters:
+    """One of these bodies is under the ground, or what looks like it: water."""
+
+    kind: Literal["enters"]
+    bodies: tuple[str, ...]
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        mj, data = scene.model.mj, scene.state.data
+        bodies = body_ids(mj, self.bodies, "behaviour.stages.until.bodies")
+        x, y, _ = scene.state.momentum.com.tolist()
+        chosen = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
+        return lowest_and_highest(mj, data, chosen)[0] < scene.model.ground.height(x, y)
+
+
+@validated(frozen=True, config=STRICT)
 class Tilted:
     """The centre of mass leans so far over the middle of these bodies, to forward [deg]."""
 
@@ -170,17 +190,16 @@ class Launched:
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         state, model = scene.state, scene.model
-        x, y, z = state.momentum.com.tolist()
         knees = state.position[model.angles][model.motors("knee", "behaviour.stages.until.knee")]
         return (
             float(state.momentum.com_velocity[2]) >= self.up
-            or z - model.ground.height(x, y) >= self.height
+            or float(state.momentum.com[2]) - scene.floor >= self.height
             or float(knees.sum()) / len(knees) < self.knee
             or scene.airborne > 0.012
         )
 
 
 Until = Annotated[
-    After | Turned | Near | Touches | Airborne | Still | Lands | Tilted | Launched,
+    After | Turned | Near | Touches | Airborne | Still | Lands | Enters | Tilted | Launched,
     Field(discriminator="kind"),
 ]

@@ -8,16 +8,19 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from rotctl.metrics import orientation, rolling, standing
+from rotctl.metrics import flip, orientation, rolling, standing
 from rotctl.metrics.columns import Arrays, floats, solver_failures
+from rotctl.metrics.flip import FlipCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 
 Criteria = Annotated[
-    OrientationCriteria | RollingCriteria | StandingCriteria, Field(discriminator="kind")
+    FlipCriteria | OrientationCriteria | RollingCriteria | StandingCriteria,
+    Field(discriminator="kind"),
 ]
-COLUMNS = {c.name: c for c in (*rolling.COLUMNS, *standing.COLUMNS, *orientation.COLUMNS)}
+_KINDS = (rolling, standing, orientation, flip)
+COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,8 @@ def judge(
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
         found, reason = asdict(stood), standing.failure(stood, criteria, steps * period)
+    elif isinstance(criteria, FlipCriteria):
+        found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = asdict(turned), orientation.failure(turned, criteria, steps * period)

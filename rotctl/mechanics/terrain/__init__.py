@@ -14,12 +14,14 @@ from rotctl.mechanics.terrain.ground import (
 )
 from rotctl.mechanics.terrain.hazards import Hazards
 from rotctl.mechanics.terrain.plane import Flat, Plane, Slope
+from rotctl.mechanics.terrain.pool import Basin, Pool
 from rotctl.mechanics.terrain.stairs import Stairs
 from rotctl.mechanics.terrain.uneven import Uneven
 
-Terrain = Annotated[Flat | Hazards | Slope | Stairs | Uneven, Field(discriminator="kind")]
+Terrain = Annotated[Flat | Hazards | Pool | Slope | Stairs | Uneven, Field(discriminator="kind")]
 
 __all__ = [
+    "Basin",
     "CHARACTER_CONTACT",
     "FASTEST",
     "GROUND_CONTACT",
@@ -28,6 +30,7 @@ __all__ = [
     "Ground",
     "Hazards",
     "Plane",
+    "Pool",
     "Slope",
     "Stairs",
     "Terrain",
