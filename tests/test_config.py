@@ -19,7 +19,9 @@ NOT_READ = (
     "cannot be read; write key=value, and quote a text with special characters: \"key='a text'\""
 )
 
-STARTS = "long, poised, prone, rest, standing, still, supine, symmetric, tucked, tucked_back"
+STARTS = (
+    "falling, long, poised, prone, rest, standing, still, supine, symmetric, tucked, tucked_back"
+)
 
 
 def complaint(*overrides):

@@ -40,9 +40,11 @@ def turned_back(position, turn):
         ["behaviour=forward_roll_1", "seed=2002", "controller=tracked_excursion"],
         ["behaviour=stand", "seed=2000", "disturbance=push", "disturbance.time=[0.2, 0.2]"],
         ["behaviour=stand", "seed=2001", "disturbance=wind", "controller.sees_disturbance=true"],
+        ["behaviour=stand_step", "seed=2000", "disturbance=push", "disturbance.time=[0.6, 0.6]",
+         "disturbance.impulse=45"],
     ],
     ids=" ".join,
-)
+)  # fmt: skip
 def test_the_same_trajectory_turned(overrides):
     """On the flat, over the first second, to rounding."""
     straight = first_second(overrides, 0)

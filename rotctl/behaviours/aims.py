@@ -186,6 +186,7 @@ class Capture:
             0 throws nothing.
         lunge_margin: inside the support, from which it counts as out [m].
         lunge_most: furthest pressure from beyond the feet [m].
+        rise: fastest up to that height [m/s], so that nobody leaps from a crouch; 0 sets no limit.
     """
 
     law: Literal["capture"]
@@ -197,6 +198,7 @@ class Capture:
     lunge: NonNegative = 0.0
     lunge_margin: NonNegative = 0.0
     lunge_most: NonNegative = 0.0
+    rise: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -212,11 +214,14 @@ class Capture:
         wish = (mx + reach * (x - mx), my + reach * (y - my))
         px, py = support.within(corners, (mx, my), wish, self.margin)
         ex, ey = self.beyond(scene)
-        cx, cy, _ = state.momentum.com.tolist()
+        cx, cy, cz = state.momentum.com.tolist()
         task["acceleration"] = [rate * rate * (cx - px - ex), rate * rate * (cy - py - ey), 0.0]
         aside = max((cx - fx) ** 2 + (cy - fy) ** 2 for fx, fy in feet)
         up = sqrt(max(self.height**2 - aside, 0.0))
-        task["target"][:3] = [cx, cy, model.ground.height(cx, cy) + up - self.sink]
+        goal = model.ground.height(cx, cy) + up - self.sink
+        if self.rise:  # so far ahead the spring's pull and the damping are equal at that speed
+            goal = min(goal, cz + self.rise * float(task["damping"][2] / task["stiffness"][2]))
+        task["target"][:3] = [cx, cy, goal]
 
     def beyond(self, scene: Scene) -> tuple[float, float]:
         """How far beyond the feet pressure is wanted [m]."""

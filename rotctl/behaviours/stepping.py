@@ -51,6 +51,7 @@ class Stepping:
         reach: furthest from the other foot, but for the width [m].
         width: of the stance at least, from foot to foot; legs do not cross [m].
         aside: capture points further to a side than this are followed by that side's foot [m].
+        fall: no step begins while the body falls faster: two legs have to brake it [m/s].
     """
 
     law: Literal["step"]
@@ -64,6 +65,7 @@ class Stepping:
     reach: Positive
     width: NonNegative
     aside: NonNegative
+    fall: Positive
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -79,7 +81,8 @@ class Stepping:
             ends = down or gone > LATE * self.time
             return Step() if ends else step
         left, right = self._feet(model)
-        if not {left, right} & set(touching):
+        falls = float(state.momentum.com_velocity[2]) < -self.fall
+        if falls or not {left, right} & set(touching):
             return step
         corners = support.hull(support.ends(model, state.data, (left, right)))
         hangs = any(support.lifted(model, state, foot) for foot in (left, right))

@@ -14,6 +14,8 @@ from rotctl.linear import product
 from rotctl.mechanics.model import ROOT_BODY, Model, is_character
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
+from rotctl.simulation import falling as falls
+from rotctl.simulation.falling import FallingSettings
 
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
@@ -43,6 +45,7 @@ class StartSettings:
             theirs. Without any a run starts in its behaviour's own pose.
         scatter: how far each joint may be from its posture, either way [rad].
         tilt: how far the whole body may be turned about any axis [rad].
+        falling: in the air, instead of on the ground.
     """
 
     name: str
@@ -55,10 +58,13 @@ class StartSettings:
     postures: dict[str, Posture] = field(default_factory=dict)
     scatter: NonNegative = 0.0
     tilt: NonNegative = 0.0
+    falling: FallingSettings | None = None
     description: str = ""
 
     def __post_init__(self) -> None:
-        if (self.scatter or self.tilt) and not self.postures:
+        if self.falling and self.postures:
+            raise ValueError("falling has its own pose, and there are postures")
+        if (self.scatter or self.tilt) and not (self.postures or self.falling):
             raise ValueError("scatter and tilt are about postures, and there are none")
 
 
@@ -72,6 +78,7 @@ class Start:
         angular_velocity: (3,) of the whole body [rad/s].
         pose: (nu,) [rad]; None leaves it to the behaviour.
         tilt: (3,) rotation vector of the whole body [rad].
+        gap: between its lowest point and the ground [m].
     """
 
     pitch: float
@@ -79,6 +86,7 @@ class Start:
     angular_velocity: Array
     pose: Array | None = None
     tilt: Array = field(default_factory=lambda: np.zeros(3))
+    gap: float = 0.0
 
 
 def draw(
@@ -101,6 +109,13 @@ def draw(
         )
     )
     start = Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
+    if settings.falling:
+        if roll_about != "left":
+            raise InputError(
+                f"start={settings.name} falls onto the feet of who turns about the left axis, and "
+                f"behaviour.roll_about={roll_about}"
+            )
+        return _aloft(settings, settings.falling, model, start, generator)
     if not settings.postures:
         return start
     if roll_about not in settings.postures:
@@ -110,13 +125,35 @@ def draw(
         )
     posture = settings.postures[roll_about]
     pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
-    pose += generator.uniform(-settings.scatter, settings.scatter, len(pose))
-    return replace(
+    placed = replace(start, pitch=start.pitch + posture.pitch)
+    return _scattered(settings, model, placed, pose, generator)
+
+
+def _aloft(
+    settings: StartSettings,
+    falling: FallingSettings,
+    model: Model,
+    start: Start,
+    generator: np.random.Generator,
+) -> Start:
+    x, y, _ = start.velocity.tolist()
+    found = falls.draw(falling, model, x, generator)
+    falls_so = replace(
         start,
-        pitch=start.pitch + posture.pitch,
-        pose=np.clip(pose, *model.joint_range.T),
-        tilt=_tilt(settings.tilt, generator),
+        pitch=start.pitch + found.contact.attitude,
+        velocity=np.array([x, y, -found.speed]),
+        angular_velocity=start.angular_velocity + found.angular_velocity,
+        gap=found.gap,
     )
+    return _scattered(settings, model, falls_so, found.contact.pose, generator)
+
+
+def _scattered(
+    settings: StartSettings, model: Model, start: Start, pose: Array, generator: np.random.Generator
+) -> Start:
+    pose = pose + generator.uniform(-settings.scatter, settings.scatter, len(pose))
+    tilt = _tilt(settings.tilt, generator)
+    return replace(start, pose=np.clip(pose, *model.joint_range.T), tilt=tilt)
 
 
 def _tilt(largest: float, generator: np.random.Generator) -> Array:
@@ -147,7 +184,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
     data.qpos[3:7] = advance(usual.orientation, product(start.tilt, axes))
     mujoco.mj_kinematics(mj, data)
-    data.qpos[2] -= _clearance(model, data) + SINK
+    data.qpos[2] += (start.gap or -SINK) - _clearance(model, data)
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[ROOT_BODY] - data.subtree_com[ROOT_BODY]
