@@ -5,8 +5,7 @@
 # Happens: each cell is two prisms, and the ball meets the sides of those next door. Pressed in by 1 cm, a ball of 5 cm
 #   radius gets normals 35 degrees off on cells of 20 cm and 90 degrees off (a wall) on cells of 10 cm. A frictionless
 #   ball that rests on the field and is sent off at 3 m/s is braked and turned aside; on a plane it is not.
-# Seen with: mujoco 4.0.0. With depth d and radius r the lean goes up to about arccos(1 - d / r), and beyond where
-#   the ball's centre is nearer to a hidden side than to the top.
+# Seen with: mujoco 4.0.0. With depth d and radius r the lean goes up to about arccos(1 - d / r), on small cells beyond.
 # Means: light limb ends sink (soft contact), so hands and feet on "terrain" feel sideways forces from edges that are
 #   not there. Compare with a plane before reading friction or slip from a height field.
 set -euo pipefail

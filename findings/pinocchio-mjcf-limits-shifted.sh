@@ -3,7 +3,7 @@
 #
 # Expected: q means the same in MuJoCo and in a Pinocchio model read from the same MJCF, and so do its limits.
 # Happens: with ref="0.5" and range="-1 1" equal q gives equal positions of the body, but Pinocchio's limits are -1.5
-#   and 0.5. Half of the allowed motion is refused there, and half a radian of forbidden motion is allowed.
+#   and 0.5. Half a radian of allowed motion is refused there, and half a radian of forbidden motion is allowed.
 # Seen with: pin 4.1.0, mujoco 4.0.0. MuJoCo counts range on the same scale as q, on which ref is the initial pose.
 # Means: an inverse kinematics or QP that takes its limits from the Pinocchio model stops a knee too early on one side and
 #   drives it into MuJoCo's limit on the other. Characters that are drawn bent, with ref to say by how much, have it.
