@@ -28,6 +28,7 @@ def turned_back(position, turn):
     return np.concatenate((turn.inv().apply(position[:3]), quaternion, position[7:]))
 
 
+@pytest.mark.exact
 @pytest.mark.parametrize(
     "overrides",
     [

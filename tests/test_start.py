@@ -151,6 +151,7 @@ def test_a_posture_leaves_the_other_draws_alone(world):
     assert with_posture.angular_velocity.tolist() == without.angular_velocity.tolist()
 
 
+@pytest.mark.exact
 @pytest.mark.parametrize("about", ["left", "right", "head"])
 @pytest.mark.parametrize("ground", ["flat", "decline"])
 def test_still_is_at_rest_on_the_ground_for_every_roll(about, ground):
