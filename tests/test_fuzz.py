@@ -146,7 +146,7 @@ def starts(*_):
 )
 def test_a_fault_is_seen(tmp_path, monkeypatch, command, fault):
     monkeypatch.setattr(child, "CPU", 1 if command is computes else 20)
-    monkeypatch.setattr(child, "WALL", 5.0 if command is waits else 300.0)
+    monkeypatch.setattr(child, "WALL", 0.5 if command is waits else 300.0)
     here = tmp_path / "in"
     here.mkdir()
     (tmp_path / "kept").touch()

@@ -58,7 +58,7 @@ def make(folder, whole=True):
         _without_clock(log)
     behaviours = listing.groups()["behaviour"] if whole else ("forward_roll_1", "turn_over")
     chosen = [[f"behaviour={name}"] for name in behaviours]
-    more = ("disturbance=push", "disturbance=wind", "plant=randomised")
+    more = ("disturbance=push", "disturbance=wind", "plant=randomised") if whole else ()
     chosen += [[*chosen[0], word] for word in more]
     made = SimpleNamespace(
         sweep=sweep,
