@@ -101,6 +101,23 @@ CASES = {
         r"terrain\..*",
         seconds=0.8,
     ),
+    "steps": Case(
+        (
+            "behaviour=stand_step",
+            "seed=2000",
+            "disturbance=push",
+            "disturbance.impulse=45",
+            "disturbance.time=0.05",
+            "disturbance.direction=30",
+        ),
+        r"behaviour\.tasks\.(balance|swing)\..*",
+        {
+            r"behaviour\.tasks\.balance\.aim\.rise": "of crouches",
+            r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together",
+        },
+        seconds=0.8,
+    ),
+    "landing": Case(("behaviour=land",), r"start\.falling\..*", seconds=0.1),
 }
 
 

@@ -1,7 +1,7 @@
 """What tasks aim at: named feedback laws of the state, a closed set.
 
 An aim fills a task's target, velocity and acceleration at one instant; which kinds of task it
-serves stands in its docstring.
+serves stands in its docstring, and in `SERVES`.
 """
 
 from math import atan2, radians, sqrt
@@ -14,7 +14,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.stepping import Stepping
+from rotctl.behaviours.stepping import Heading, Stepping
 from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
@@ -29,7 +29,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @validated(frozen=True, config=STRICT)
 class Hold:
-    """Stay as at the begin of the stage: every kind but limits."""
+    """Stay as at the begin of the stage: linear, spin, point, attitude."""
 
     law: Literal["hold"]
 
@@ -285,11 +285,30 @@ Aim = Annotated[
     | Capture
     | Lunge
     | Stepping
+    | Heading
     | Lean
     | Launch
     | Whirl,
     Field(discriminator="law"),
 ]
+
+SERVES: dict[type, tuple[str, ...]] = {
+    Hold: ("linear", "spin", "point", "attitude"),
+    Upright: ("attitude",),
+    Ground: ("point",),
+    Turn: ("spin",),
+    Capture: ("linear",),
+    Lunge: ("spin",),
+    Stepping: ("point",),
+    Heading: ("attitude",),
+    Bow: ("attitude",),
+    Plane: ("attitude",),
+    Pose: ("joints",),
+    Lean: ("linear",),
+    Launch: ("linear",),
+    Whirl: ("spin",),
+}
+"""Kinds of task that an aim is for."""
 
 
 def _missing(scene: Scene, angle: np.ndarray) -> np.ndarray:

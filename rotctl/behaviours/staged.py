@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours.aims import Aim, Pose
+from rotctl.behaviours.aims import SERVES, Aim
 from rotctl.behaviours.behaviour import (
     Placement,
     Signals,
@@ -69,8 +69,10 @@ class TaskSettings:
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
         if bool(self.body) != (self.kind in ("point", "attitude", "joints")):
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.body else 'a'} body")
-        if (self.kind == "joints") != isinstance(self.aim, Pose):
-            raise ValueError("the aim pose is for tasks of kind joints, which have no other")
+        if self.aim and self.kind not in (kinds := SERVES[type(self.aim)]):
+            raise ValueError(
+                f"the aim {self.aim.law} is for tasks of kind {' or '.join(kinds)}, not {self.kind}"
+            )
         if self.point != (0.0, 0.0, 0.0) and self.kind not in ("point", "limits"):
             raise ValueError(f"a task of kind {self.kind} has no point")
 

@@ -36,9 +36,7 @@ STAGGERED = 0.15  # [m] feet so far one before the other: the one behind swings
 
 @validated(frozen=True, config=STRICT)
 class Stepping:
-    """Swing a foot to the capture point: point; and turn it to where the pelvis faces: attitude.
-
-    A foot that does not swing has no weight here.
+    """Swing a foot to the capture point; one that does not swing has no weight here: point.
 
     Attributes:
         bodies: the left foot and the right one.
@@ -96,10 +94,6 @@ class Stepping:
         step, body, data = scene.step, int(task["body"]), scene.state.data
         if step.swing != body:
             task["weight"] = 0.0
-            return
-        if kind == "attitude":
-            x, y = support.forward(scene.state, ROOT_BODY)
-            task["target"] = about_up(atan2(y, x))
             return
         place = data.xpos[body] + product(data.xmat[body].reshape(3, 3), task["point"])
         velocity = _velocity(scene, body, place)
@@ -164,6 +158,23 @@ class Stepping:
     def _feet(self, model: Model) -> tuple[int, int]:
         left, right = self.bodies
         return body_id(model.mj, left, KEY), body_id(model.mj, right, KEY)
+
+
+@validated(frozen=True, config=STRICT)
+class Heading:
+    """Turn a foot that swings to where the pelvis faces; no weight for others: attitude."""
+
+    law: Literal["heading"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        x, y = support.forward(scene.state, ROOT_BODY)
+        task["target"] = about_up(atan2(y, x))
+        if scene.step.swing != int(task["body"]):
+            task["weight"] = 0.0
 
 
 def arrival(way: float, speed: float, time: float) -> float:
