@@ -98,7 +98,9 @@ def _check(config: Config, model: Model) -> None:
     """Raises InputError where criteria judge other motions or bodies, or a push comes too late."""
     rolls = isinstance(config.behaviour, RollingSettings)
     if rolls != (config.criteria.kind == "rolling"):
-        wanted = "criteria=rolling" if rolls else "criteria=standing, landing, flip or orientation"
+        wanted = (
+            "criteria=rolling" if rolls else "criteria=standing, landing, flip, dive or orientation"
+        )
         raise InputError(
             f"criteria={config.criteria.name} does not judge behaviour={config.behaviour.name}, "
             f"a behaviour of kind {config.behaviour.kind}; choose {wanted}"

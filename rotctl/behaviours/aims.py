@@ -105,6 +105,21 @@ class Plane:
 
 
 @validated(frozen=True, config=STRICT)
+class Watch:
+    """Nothing is wanted: the log's error is the way from the point to the centre of mass: point."""
+
+    law: Literal["watch"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target, and no weight."""
+        task["target"][:3] = scene.state.momentum.com
+        task["weight"] = 0.0
+
+
+@validated(frozen=True, config=STRICT)
 class Pose:
     """A body's joints as the stage's pose has them, and as fast as it has them move: joints."""
 
@@ -279,6 +294,7 @@ Aim = Annotated[
     | Upright
     | Bow
     | Plane
+    | Watch
     | Pose
     | Ground
     | Turn
@@ -303,6 +319,7 @@ SERVES: dict[type, tuple[str, ...]] = {
     Heading: ("attitude",),
     Bow: ("attitude",),
     Plane: ("attitude",),
+    Watch: ("point",),
     Pose: ("joints",),
     Lean: ("linear",),
     Launch: ("linear",),

@@ -8,18 +8,19 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from rotctl.metrics import flip, orientation, rolling, standing
+from rotctl.metrics import dive, flip, orientation, rolling, standing
 from rotctl.metrics.columns import Arrays, floats, solver_failures
+from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.flip import FlipCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 
 Criteria = Annotated[
-    FlipCriteria | OrientationCriteria | RollingCriteria | StandingCriteria,
+    DiveCriteria | FlipCriteria | OrientationCriteria | RollingCriteria | StandingCriteria,
     Field(discriminator="kind"),
 ]
-_KINDS = (rolling, standing, orientation, flip)
+_KINDS = (rolling, standing, orientation, flip, dive)
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
@@ -57,6 +58,8 @@ def judge(
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
         found, reason = asdict(stood), standing.failure(stood, criteria, steps * period)
+    elif isinstance(criteria, DiveCriteria):
+        found, reason = dive.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
     else:

@@ -20,6 +20,8 @@ Pixels = NDArray[np.uint8]
 
 FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
 MARGIN = 1.25  # of the picture around the character
+FALL = 5.0  # [m] of heights over the ground, at an adult's size: who jumps stays below
+AROUND = 1.6  # half of a picture of a fall, as a multiple of half the body's height
 LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked adult from filling the picture
 ADULT_WEIGHT = 686.7  # [N]
 GROUND_LINE = 0.9  # how far below the middle the ground is, in half heights
@@ -100,6 +102,7 @@ class Scene:
         self._data = mujoco.MjData(model)
         self._limbs = character.is_limb(model)
         self._distance = 0.0
+        self._falls = False
         self._centre = 0.0  # [m] height of the camera's target above the ground
         self._view_in = SIDE
         self.heading = 0.0  # of the way, from +x towards +y [rad]
@@ -134,7 +137,8 @@ class Scene:
             low, high = min(low, least[2] - ground), max(high, most[2] - ground)
         self.heading = heading
         turn = np.abs([[np.cos(heading), np.sin(heading)], [np.sin(heading), np.cos(heading)]])
-        height, halves = halves[:, 2].mean(), halves[:, :2]
+        reach = halves[:, 2]
+        height, halves = reach.mean(), halves[:, :2]
         along, across = turn @ halves.mean(axis=0)
         lies = height < FLAT * halves.max(axis=1).mean()
         chosen = ABOVE if lies else AHEAD if across > LONG * along else SIDE
@@ -146,7 +150,11 @@ class Scene:
         if lies:
             low -= float((halves @ into[:2]).max()) * into[2] / up[2]  # the near side
         least_half = LEAST_HALF_HEIGHT * self.size
-        half = max(0.5 * (high - low), wide * self.height / self.width, least_half)
+        tall = high - low
+        self._falls = tall > FALL * self.size
+        if self._falls:  # the camera goes down with it, and sees little more than it
+            tall = 2.0 * AROUND * float(reach.max())
+        half = max(0.5 * tall, wide * self.height / self.width, least_half)
         self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)
         self._centre = low + GROUND_LINE * half
 
@@ -216,8 +224,10 @@ class Scene:
         return np.asarray(low), np.asarray(high)
 
     def _target(self) -> Array:
-        """Above the ground, in the middle of the character; its height does not follow."""
+        """Above the ground, in the middle of the character; its height follows a fall alone."""
         least, most = self._outline()
+        if self._falls:
+            return np.asarray(0.5 * (least + most))
         x, y = 0.5 * (least[0] + most[0]), float(character.centre_of_mass(self._data)[1])
         return np.array([x, y, self.ground(x, y) + self._centre])
 

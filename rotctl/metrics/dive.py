@@ -1,0 +1,148 @@
+"""A dive in numbers: how the body enters the water, and how far it kept from the platform.
+
+The log holds where the watched points are, as seen from the centre of mass: `hand_l` and the like
+are tasks of kind point with the aim `watch`, whose error is the way from there to it.
+"""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.metrics.columns import Arrays, Column, floats, frame
+from rotctl.metrics.flip import longest_flight, turn
+from rotctl.settings import STRICT, Finite, Positive
+
+COLUMNS = (
+    Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),
+    Column("entry_sag", "The part of it in the plane of the dive", "deg"),
+    Column("bent_most", "Joint furthest off the straight pose at entry", "deg"),
+    Column("clearance", "Nearest to the platform on the way down", "m"),
+    Column("entry_time", "Time of the entry", "s"),
+)
+
+
+@validated(frozen=True, config=STRICT)
+class DiveCriteria:
+    """Limits of a dive; see `conf/criteria/dive.yaml`.
+
+    Attributes:
+        angle: of the line from the feet to the hands, off the vertical at entry [deg].
+        straight: pose at entry by joint name [rad]; joints not named are not looked at.
+        bent: off that pose at most [deg].
+        clearance: from the platform, on the way down [m].
+    """
+
+    name: str
+    kind: Literal["dive"]
+    angle: Positive
+    straight: dict[str, Finite]
+    bent: Positive
+    clearance: Positive
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class DiveMetrics:
+    """What a log says of a dive; see `COLUMNS`. NaN where it does not enter."""
+
+    entry_angle: float
+    entry_sag: float
+    bent_most: float
+    clearance: float
+    entry_time: float
+
+
+def judge(
+    log: Arrays, criteria: DiveCriteria, target: float, period: float
+) -> tuple[dict[str, Any], str]:
+    """Columns of a run, and why it is no success; empty if it is one.
+
+    Args:
+        target: to turn about left [deg].
+        period: of the control [s].
+    """
+    m, c = measure(log, criteria, target, period), criteria
+    revolved = turn(log)
+    row = entry(log)
+    turned = float(revolved[row]) if row is not None else math.nan
+    rules = (
+        (row is not None, "did not enter the water"),
+        (abs(turned - target) < 90.0, f"turned {turned:.0f} deg of {target:g}"),
+        (m.entry_angle < c.angle, f"enters {m.entry_angle:.1f} deg off the vertical"),
+        (m.bent_most < c.bent, f"enters with a joint bent by {m.bent_most:.0f} deg"),
+        (m.clearance > c.clearance, f"came within {m.clearance:.2f} m of the platform"),
+    )
+    reason = next((reason for kept, reason in rules if not kept), "")
+    return {"revolved": turned, **asdict(m)}, reason
+
+
+def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -> DiveMetrics:
+    """Measure a run."""
+    row = entry(log)
+    if row is None:
+        return DiveMetrics(*[math.nan] * 5)
+    line = _mean(log, ("hand_l", "hand_r"))[row] - _mean(log, ("foot_l", "foot_r"))[row]
+    ahead, left, up = frame(log)
+    x, y, z = (float((line * axis).sum()) for axis in (ahead, left, up))
+    return DiveMetrics(
+        entry_angle=math.degrees(math.atan2(math.hypot(x, y), -z)),
+        entry_sag=math.degrees(math.atan2(x, -z)),
+        bent_most=_bent(log, criteria)[row],
+        clearance=_clearance(log, row, math.copysign(1.0, target)),
+        entry_time=row * period,
+    )
+
+
+def entry(log: Arrays) -> int | None:
+    """The row in which the last stage begins, which it does as the hands enter; None if never."""
+    stage = np.asarray(log["command/stage"])
+    flown, _ = longest_flight(log)
+    later = np.flatnonzero(np.diff(stage) > 0) + 1
+    return int(later[-1]) if len(later) and later[-1] > flown > 0 else None
+
+
+def _mean(log: Arrays, names: tuple[str, ...]) -> np.ndarray:
+    """Mean place of watched points (steps, 3), world [m]."""
+    tasks = [name.decode("utf-8", "replace") for name in np.asarray(log["model/task"]).tolist()]
+    missing = np.asarray(log["command/error"])[:, [tasks.index(name) for name in names]]
+    along = frame(log)
+    away = sum(missing[..., i : i + 1] * along[i] for i in range(3))
+    return np.asarray(floats(log, "trajectory/com") - np.mean(away, axis=1))
+
+
+def _bent(log: Arrays, criteria: DiveCriteria) -> list[float]:
+    """Of the joint that is furthest off the straight pose (steps,) [deg]."""
+    names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/joint"]).tolist()]
+    angles = floats(log, "trajectory/qpos")[:, 7 : 7 + len(names)]
+    wanted = [criteria.straight.get(_whole(name), math.nan) for name in names]
+    off = np.degrees(np.abs(angles - np.array(wanted)))
+    return [float(value) for value in np.nanmax(off, axis=1)]
+
+
+def _whole(joint: str) -> str:
+    return joint.removesuffix("_l").removesuffix("_r")
+
+
+def _clearance(log: Arrays, row: int, sense: float) -> float:
+    """How near the watched points come to where the feet last stood, or behind it [m].
+
+    Who turns backward (`sense` -1) goes backward.
+    Counted from the highest point of the flight on: before it the feet are still at the edge.
+    """
+    first, _ = longest_flight(log)
+    top = first + int(np.argmax(floats(log, "trajectory/com")[first:row, 2]))
+    ahead, up = sense * frame(log)[0], frame(log)[2]
+    stood = np.asarray(log["contacts/position"])[first - 1]
+    used = np.asarray(log["contacts/body"])[first - 1] >= 0
+    edge = max(float((p * ahead).sum()) for p in stood[used])
+    floor = float(stood[used][0, 2])
+    near = math.inf
+    for names in (("hand_l", "hand_r"), ("foot_l", "foot_r"), ("head",), ("pelvis",)):
+        place = _mean(log, names)[top:row]
+        beyond = np.maximum((place * ahead).sum(axis=1) - edge, 0.0)
+        over = np.maximum((place * up).sum(axis=1) - floor, 0.0)
+        near = min(near, float(np.sqrt(beyond**2 + over**2).min()))
+    return near

@@ -1,0 +1,96 @@
+"""Dives into water, and what they are judged by."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.metrics import dive
+from rotctl.run import in_memory
+from rotctl.scenario import build
+
+PERIOD = 1 / 240
+
+
+@pytest.fixture(scope="module")
+def back():
+    """A backward dive, its scenario and its rows."""
+    scenario = build(load(["behaviour=dive_backward", "seed=2000", "duration=5"]))
+    buffer, _ = in_memory(scenario)
+    return scenario, buffer.arrays()
+
+
+def placed(scenario, log, row):
+    """MuJoCo's own kinematics of a row."""
+    data = mujoco.MjData(scenario.model.mj)
+    data.qpos[:] = log["trajectory/qpos"][row]
+    mujoco.mj_kinematics(scenario.model.mj, data)
+    return data
+
+
+def test_it_enters_head_first_and_straight(back):
+    scenario, log = back
+    columns, reason = dive.judge(log, scenario.config.criteria, -540.0, PERIOD)
+    assert reason == ""
+    assert columns["revolved"] == pytest.approx(-540.0, abs=15.0)
+
+
+def test_the_entry_is_when_and_how_the_body_is_there(back):
+    """By kinematics of the logged state: hands at the water, and the line to them."""
+    scenario, log = back
+    row = dive.entry(log)
+    mj, data = scenario.model.mj, placed(scenario, log, row)
+    hands = np.mean(
+        [
+            data.xpos[mj.body(f"forearm_{s}").id]
+            + data.xmat[mj.body(f"forearm_{s}").id].reshape(3, 3) @ [0.0, 0.0, -0.3]
+            for s in "lr"
+        ],
+        axis=0,
+    )
+    feet = np.mean([data.xpos[mj.body(f"foot_{s}").id] for s in "lr"], axis=0)
+    line = hands - feet
+    angle = np.degrees(np.arccos(-line[2] / np.linalg.norm(line)))
+    found = dive.measure(log, scenario.config.criteria, -540.0, PERIOD)
+    assert found.entry_angle == pytest.approx(angle, abs=0.01)
+    assert hands[2] == pytest.approx(-10.0, abs=0.15)
+    assert found.entry_time == pytest.approx(row * PERIOD)
+
+
+def test_nothing_of_it_touches_the_platform_once_it_has_left(back):
+    _, log = back
+    first, last = dive.longest_flight(log)
+    assert last > dive.entry(log)
+    assert dive._clearance(log, dive.entry(log), -1.0) > 0.3
+    assert first < dive.entry(log)
+
+
+def test_who_never_enters_has_no_numbers(back):
+    scenario, log = back
+    stays = {**log, "command/stage": np.zeros_like(log["command/stage"])}
+    columns, reason = dive.judge(stays, scenario.config.criteria, -540.0, PERIOD)
+    assert reason == "did not enter the water"
+    assert np.isnan(columns["entry_angle"])
+
+
+def test_each_limit_has_its_reason(back):
+    scenario, log = back
+    strict = scenario.config.criteria
+    for limits, words in (
+        ({"angle": 1e-6}, "off the vertical"),
+        ({"bent": 1e-6}, "with a joint bent"),
+        ({"clearance": 5.0}, "of the platform"),
+    ):
+        assert words in dive.judge(log, replace(strict, **limits), -540.0, PERIOD)[1]
+    assert "of 540" in dive.judge(log, strict, 540.0, PERIOD)[1]
+
+
+def test_water_is_lower_than_the_platform_and_stops_nobody():
+    ground = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.ground
+    assert ground.height(0.0, 0.0) == 0.0
+    assert ground.height(0.19, 0.0) == ground.height(5.0, 2.0) == -3.0
+    model = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.mj
+    water = model.geom("water").id
+    assert model.geom_contype[water] == model.geom_conaffinity[water] == 0
