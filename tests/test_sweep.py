@@ -105,7 +105,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
         (["seed=1,-2"], "seed=-2: must be greater than or equal to 0"),
         (["seed=1", "--retries", "-1"], "--retries=-1: must be at least 0"),
         (["seed=1", "--jobs", "0"], "--jobs=0: valid: 1 to 1024"),
-        (["+experiment=no"], "+experiment=no: no such experiment; valid: contrasts, "),
+        (["+experiment=no"], "+experiment=no: no such experiment; valid: ablations, "),
     ]:
         code, stdout, stderr = cli("sweep", *arguments, "--out", out)
         assert (code, stdout) == (2, "")

@@ -7,7 +7,7 @@ always keeps all of them. The paper settled on `as_written` and names the others
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import pi, tau
+from math import atan2, pi, tau
 from typing import Literal
 
 import numpy as np
@@ -136,6 +136,6 @@ def _is_corner(point: int, places: Array) -> bool:
     away = away[_norm(away) > 0.0]
     if len(away) < 2:
         return True
-    angles = np.sort(np.arctan2(away[:, 1], away[:, 0]))
+    angles = np.sort([atan2(y, x) for x, y, *_ in away.tolist()])
     gaps = np.diff(angles, append=angles[0] + tau)
     return bool(gaps.max() >= pi - 1e-9)
