@@ -105,3 +105,12 @@ def test_without_any_result_there_are_still_charts():
     made = charts(grid(table([{"behaviour": "a"}, {"behaviour": "b"}], seeds=2, missing=4)))
     assert [chart.name for chart in made] == ["groups", "failures", "starts"]
     assert made[0].alt == "No run has a result."
+
+
+@pytest.mark.parametrize("value", [1e308, -1e308, 1e15, 1e-308, 5e-324, -1e-320])
+def test_numbers_that_no_axis_has_ticks_for(value):
+    """A stranger's outcome, in one run and in all; and along an axis."""
+    some = table(grids(behaviour=["a"], gain=[1.0, value, 3.0]))
+    for rows in ([0], slice(None)):
+        some.rows.loc[some.rows.index[rows], METRICS] = value
+        assert charts(grid(some))

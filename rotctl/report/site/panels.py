@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rotctl.report.axes import BLUE, GREEN, ORANGE
+from rotctl.report.rows import LARGEST
 from rotctl.report.site.grid import labels
 from rotctl.report.site.words import quantity, with_unit
 
@@ -19,6 +20,7 @@ _COMMANDED = {
 _HEADINGS = {"angular_velocity_mean": "In-plane [rev/s]", "speed_mean": "Speed [m/s]"}
 _COLOURS = (BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9", "#8a929c", "#b8860b")
 _RATE = "Success rate [%]"
+LEAST = 1e-12  # in any unit; what is smaller is 0
 
 
 @dataclass(frozen=True)
@@ -162,5 +164,8 @@ def _band(rows: pd.DataFrame, metric: str) -> list[Any]:
 
 
 def _numbers(rows: pd.DataFrame, name: str) -> Any:
+    """A column as floats; those that an axis has no ticks for are none, or 0."""
     column = rows[name] if name in rows else pd.Series(np.nan, rows.index)
-    return np.asarray(pd.to_numeric(column, errors="coerce"), dtype=float)
+    found = np.asarray(pd.to_numeric(column, errors="coerce"), dtype=float)
+    found = np.where(np.abs(found) < LARGEST, found, np.nan)
+    return np.where(np.abs(found) < LEAST, 0.0, found)
