@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, solver_failures
+from rotctl.metrics.smoothness import chatter, jerk, recovery
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
@@ -222,56 +223,13 @@ def measure(
         ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
-        jerk=_jerk(log, period),
-        chatter=_chatter(log, period),
-        **_recovery(log, criteria, progress, axis, period),
+        jerk=jerk(log, period),
+        chatter=chatter(log, period),
+        **recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period),
     )
-
-
-def _jerk(log: Arrays, period: float) -> float:
-    """Of the joints, from the second difference of their velocities; NaN for too few rows."""
-    jerk = np.diff(floats(log, "trajectory/qvel")[:, 6:], 2, axis=0) / period**2
-    return float(np.sqrt((jerk**2).mean())) if len(jerk) else math.nan
-
-
-def _chatter(log: Arrays, period: float) -> float:
-    """Bodies that control takes up or lets go of, a second; NaN for too few rows."""
-    body, used = np.asarray(log["contacts/body"]), np.asarray(log["contacts/used"]).astype(bool)
-    if len(body) < 2:
-        return math.nan
-    held = np.zeros((len(body), int(body.max(initial=0)) + 1), dtype=bool)
-    rows, slots = np.nonzero(used)
-    held[rows, body[rows, slots]] = True
-    return float((held[1:] != held[:-1]).sum() / ((len(body) - 1) * period))
-
-
-def _recovery(
-    log: Arrays,
-    criteria: RollingCriteria,
-    progress: NDArray[np.float64],
-    axis: NDArray[np.float64],
-    period: float,
-) -> dict[str, Any]:
-    """The members of `RollingMetrics` that are about a push.
-
-    The axis is its mean over a second: a roll sways.
-    """
-    wrench = floats(log, "disturbance/wrench") if "disturbance/wrench" in log else np.zeros((0, 6))
-    acted = np.flatnonzero(wrench.any(axis=1))
-    if not len(acted) or acted[-1] + 1 >= len(progress):
-        return {"recovery": math.nan, "recovered": math.nan}
-    second, ahead = round(1.0 / period), round(criteria.stall_time / period)
-    first, last = int(acted[-1]) + 1, len(progress) - max(second, ahead)
-    for row in range(first, last):
-        x, y, _ = axis[row : row + second].mean(axis=0).tolist()
-        along = abs(math.degrees(math.atan2(-x, y))) < criteria.recovery_heading
-        if along and progress[row + ahead] - progress[row] >= criteria.recovery_progress:
-            taken = (row - first) * period
-            return {"recovery": taken, "recovered": float(taken <= criteria.recovery_time)}
-    return {"recovery": math.nan, "recovered": 0.0}
 
 
 def _worst_revolutions(

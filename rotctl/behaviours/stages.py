@@ -1,0 +1,84 @@
+"""What a stage of a behaviour says: its tasks with their aims, its poses, and what ends it."""
+
+from dataclasses import field
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.aims import SERVES, Aim
+from rotctl.behaviours.flight import FlightSettings
+from rotctl.behaviours.posing import RiseSettings
+from rotctl.behaviours.until import Until
+from rotctl.control.kinds import KINDS
+from rotctl.control.supervisor import SupervisorName
+from rotctl.motion import Poses
+from rotctl.settings import STRICT, NonNegative, Vector
+
+
+@validated(frozen=True, config=STRICT)
+class TaskSettings:
+    """One task of a stage.
+
+    Attributes:
+        kind: see `rotctl.control.kinds`.
+        aim: what it aims at; none for `limits`.
+        body: that it is about; a name without a side stands for a task on both sides.
+        point: of the body, in its frame [m]; for `limits` the margin is its first.
+        gains: name of the controller's gains; those of the task's own name, if empty.
+    """
+
+    kind: str
+    aim: Aim | None = None
+    body: str = ""
+    point: Vector = (0.0, 0.0, 0.0)
+    gains: str = ""
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise ValueError(f"no kind {self.kind!r}; valid: {', '.join(KINDS)}")
+        if (self.aim is None) != (self.kind == "limits"):
+            raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
+        if bool(self.body) != (self.kind in ("point", "attitude", "joints")):
+            raise ValueError(f"a task of kind {self.kind} has {'no' if self.body else 'a'} body")
+        if self.aim and self.kind not in (kinds := SERVES[type(self.aim)]):
+            raise ValueError(
+                f"the aim {self.aim.law} is for tasks of kind {' or '.join(kinds)}, not {self.kind}"
+            )
+        if self.point != (0.0, 0.0, 0.0) and self.kind not in ("point", "limits"):
+            raise ValueError(f"a task of kind {self.kind} has no point")
+
+
+@validated(frozen=True, config=STRICT)
+class Stage:
+    """One part of a behaviour.
+
+    Attributes:
+        poses: key poses over the phase; or in their place
+        rise: poses over the height of the centre of mass, or
+        flight: poses that bring the body to its landing, see `rotctl.behaviours.flight`.
+        tasks: by name, beside those of every stage.
+        until: what ends it; nothing for the last stage alone.
+        supervisor: in place of the controller's.
+        pose: name of the controller's pose gains in place of its usual ones.
+        contact: name of its gains of contacts, likewise.
+        lead: poses are looked up so far ahead of the phase, at most at the target [rad].
+        held_out: bodies whose contacts control may not use.
+    """
+
+    name: str
+    poses: Poses | None = None
+    rise: RiseSettings | None = None
+    flight: FlightSettings | None = None
+    tasks: dict[str, TaskSettings] = field(default_factory=dict)
+    until: Until | None = None
+    supervisor: SupervisorName | None = None
+    pose: str = ""
+    contact: str = ""
+    lead: NonNegative = 0.0
+    held_out: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        given = [law for law in (self.poses, self.rise, self.flight) if law is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"the stage {self.name!r} must have one of poses, rise and flight, not {len(given)}"
+            )
