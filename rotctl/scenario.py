@@ -108,6 +108,11 @@ def _check(config: Config, model: Model) -> None:
     stands = getattr(config.criteria, "landing", config.criteria)
     for name in getattr(stands, "feet", ()):
         models.body_id(model.mj, name, "criteria.feet")
+    if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
+        raise InputError(
+            f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
+            f"physics={config.physics.name} give plant.predicted=false"
+        )
     push = config.disturbance
     if isinstance(push, Push) and ends(push.time)[0] >= config.duration:
         raise InputError(

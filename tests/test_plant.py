@@ -133,6 +133,15 @@ def test_a_prediction_without_a_delay_is_refused():
         load(["plant.predicted=true"])
 
 
+def test_a_prediction_by_other_physics_than_the_simulated_is_refused():
+    with pytest.raises(InputError) as caught:
+        made("plant=randomised", "physics=lockstep")
+    assert str(caught.value) == (
+        "plant=randomised predicts with MuJoCo's own contacts; with physics=lockstep give "
+        "plant.predicted=false"
+    )
+
+
 # ---------------------------------------------------------------- noisy senses
 
 
