@@ -64,6 +64,7 @@ def assert_as_good(scenario, asked):
 @pytest.mark.parametrize(
     "overrides",
     [
+        ["controller.pose.explicit=true"],
         ["seed=1"],
         ["seed=2", "controller.supervisor=none"],
         ["seed=3", "controller.supervisor=modified"],

@@ -85,7 +85,7 @@ def test_a_key_that_may_be_missing_can_be_removed():
         (
             "controller.pose.dampin=1",
             "unknown key 'controller.pose.dampin'; valid keys under controller.pose: "
-            "stiffness, damping, horizon, weight, blend",
+            "stiffness, damping, horizon, weight, blend, explicit",
         ),
         (
             "behaviour.reference.clip=x",

@@ -57,6 +57,18 @@ def test_equals_the_implicit_formula(world, steps, tracker, gains, horizon, ahea
             assert torque == pytest.approx(expected, abs=1e-8 * (1 + np.abs(expected).max()))
 
 
+def test_explicit_is_eq_6_as_printed(world, steps, tracker, gains):
+    for step in steps[::20]:
+        state, pose = world.state(step), step.command.pose_a
+        M = np.zeros((world.mj.nv, world.mj.nv))
+        mujoco.mj_fullM(world.mj, state.data, M)
+        inertia = np.diag(M)[6:] - world.mj.dof_armature[6:]
+        spring = gains.stiffness * (pose - state.position[7:])
+        expected = inertia * (spring - gains.damping * state.velocity[6:])
+        found = tracker.torques(state, pose[None], replace(gains, explicit=True, horizon=0.1))
+        assert found[0] == pytest.approx(expected, rel=1e-12, abs=1e-9)
+
+
 def test_linear_in_the_pose(world, steps, tracker, gains):
     """The blend of eq. 7: the torque towards a blended pose is the blend of the torques."""
     for step in steps[::20]:

@@ -201,6 +201,7 @@ class CompiledStep:
         given = self._command
         given.pose_stiffness, given.pose_damping = pose.stiffness, pose.damping
         given.pose_horizon = pose.horizon
+        given.pose_explicit = pose.explicit
         given.pose_weight, given.blend_weight = pose.weight, pose.blend
         given.contact_damping, given.contact_weight = contact.damping, contact.weight
         given.contact_force = contact.force

@@ -39,6 +39,9 @@ class PoseTracker:
         stiffness = gains.stiffness * inertia
         damping = gains.damping * inertia
         velocity = state.velocity[joints]
+        if gains.explicit:
+            angles = state.position[self._model.angles]
+            return np.asarray(stiffness * (poses - angles) - damping * velocity)
         predicted = state.position[self._model.angles] + h * velocity
         explicit = stiffness * (poses - predicted) - damping * velocity
         # (M + h Kd) qddot = explicit - C: same sparsity as M, so MuJoCo's factor serves.

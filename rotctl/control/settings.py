@@ -39,6 +39,7 @@ class PoseGains:
         horizon: both act as they will be so long ahead, at least one control period [s].
         weight: on the torques' distance from the blend [1/(N m)2].
         blend: on the rate of the blend gamma, relative to the pose objective [s2].
+        explicit: eq. 6 as printed, at this instant and without the horizon.
     """
 
     stiffness: NonNegative
@@ -46,6 +47,7 @@ class PoseGains:
     horizon: NonNegative
     weight: NonNegative
     blend: Positive
+    explicit: Annotated[bool, Strict()] = False
 
 
 @validated(frozen=True, config=STRICT)

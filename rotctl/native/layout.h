@@ -59,7 +59,7 @@ typedef struct {
   double pose_stiffness, pose_damping, pose_horizon, pose_weight, blend_weight;
   double contact_damping, contact_weight, contact_force;
   double threshold_force, threshold_torque, threshold_separation;
-  int supervisor, tasks;
+  int supervisor, pose_explicit, tasks;
   const Task* task;
   const double *pose_a, *pose_b;
   const unsigned char* held_out;
