@@ -1,7 +1,5 @@
 """Results kept for the very objects they came from."""
 
-import gc
-
 from rotctl.same import kept
 
 
@@ -42,4 +40,3 @@ def test_no_id_is_used_again_while_its_result_is_kept():
 
     for n in range(100):  # a list that is gone leaves its place to the next one
         assert first([n]) == n
-        gc.collect()
