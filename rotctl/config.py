@@ -5,17 +5,19 @@ no `_target_` or resolver is honoured, in overrides and in files, so that a stra
 cannot execute code or look anything up.
 """
 
+import copy
 import json
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from functools import cache, lru_cache
+from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
 import yaml
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
-from hydra.core.override_parser.types import Override
+from hydra.core.override_parser.types import Override, OverrideType
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
@@ -38,13 +40,14 @@ from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
-from rotctl.plain import NOTHING, Way, dotted, leaves, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, find, leaves, member, put, way
 from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
 
 PROSE = ("description", "source")  # may have several lines
 LONGEST_TEXT = 200
+MISSING = "???"  # OmegaConf's word for a value that is still to be given
 LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
 
 
@@ -103,6 +106,50 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     """
     found = [single(override) for override in overrides]
     require_plain([(str(o.key_or_group), str(o.value())) for o in found if _is_choice(o)])
+    quickly = _set_on_choices(overrides, found)
+    return _by_hydra(overrides, found) if quickly is None else quickly
+
+
+def _set_on_choices(overrides: list[str], found: list[Override]) -> dict[str, Any] | None:
+    """What Hydra makes of the choices among them, with the other values set on it.
+
+    None where more than that is asked, or something is wrong, for Hydra to tell.
+    """
+    plain = all(o.type == OverrideType.CHANGE and not o.package for o in found)
+    if not plain or any(MISSING in text for text in overrides):
+        return None
+    chosen = [text for text, o in zip(overrides, found, strict=True) if choices(_key(o))]
+    try:
+        data: Any = copy.deepcopy(_chosen(tuple(chosen), conf_dir(), _stamp(conf_dir())))
+    except InputError:
+        return None
+    for override in found:
+        key, value = _key(override), override.value()
+        if choices(key):
+            continue
+        before = find(data, way(key))
+        if before is NOTHING or isinstance(before, dict) or isinstance(value, dict):
+            return None
+        data = put(data, way(key), value)
+    return data
+
+
+@lru_cache(maxsize=64)
+def _chosen(overrides: tuple[str, ...], folder: Path, stamp: tuple[int, ...]) -> dict[str, Any]:
+    """Composed of choices alone, from files as they were at some time."""
+    return _by_hydra(list(overrides), [single(override) for override in overrides])
+
+
+def _stamp(folder: Path) -> tuple[int, ...]:
+    """When each file of a folder was changed."""
+    return tuple(path.stat().st_mtime_ns for path in sorted(folder.rglob("*.yaml")))
+
+
+def _key(override: Override) -> str:
+    return str(override.key_or_group)
+
+
+def _by_hydra(overrides: list[str], found: list[Override]) -> dict[str, Any]:
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):

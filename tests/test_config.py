@@ -3,13 +3,18 @@
 import copy
 import json
 import math
+import shutil
 from dataclasses import FrozenInstanceError, asdict
 
 import pytest
 import yaml
 
-from rotctl.config import check, load, to_dict, to_yaml
+from rotctl import config as module
+from rotctl.config import _by_hydra as by_hydra
+from rotctl.config import check, composed, load, to_dict, to_yaml
 from rotctl.errors import InputError
+from rotctl.listing import conf_dir
+from rotctl.overrides import single
 
 GROUPS = (
     "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "
@@ -347,3 +352,43 @@ def test_bad_offsets_are_one_line(offsets, said):
     with pytest.raises(InputError) as caught:
         load(["behaviour=forward_roll_2", f"+behaviour.reference.offsets={offsets}"])
     assert str(caught.value) == said
+
+
+# ---------------------------------------------------------------- composed once, set many times
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        [],
+        ["seed=3"],
+        ["behaviour=decline", "duration=5", "terrain.angle=4"],
+        ["duration=5", "behaviour=back_flip", "plant=varied", "plant.mass=0.05"],
+        ["start.speed_x=[0,1]", "start=rest"],
+        ["start=rest", "start.speed_x=[0,1]", "seed=1", "seed=2"],
+        ["controller.tasks.spin.stiffness.1=300"],
+        ["behaviour.poses.b=null", "terrain.name='a, b'"],
+        ["+behaviour.poses.a.hip_z=0.1", "seed=2"],
+        ["disturbance=push", "disturbance.direction=30", "++disturbance.phase=90"],
+    ],
+)
+def test_a_config_is_what_hydra_makes_of_all_its_overrides(overrides):
+    found = [single(override) for override in overrides]
+    for _ in "12":  # the second time the choices are composed already
+        assert composed(overrides) == by_hydra(overrides, found)
+
+
+def test_a_composed_config_may_be_changed_and_the_next_is_as_it_was():
+    data = composed(["seed=1"])
+    data["behaviour"]["name"] = "other"
+    data["behaviour"].pop("speed")
+    assert composed(["seed=1"]) == by_hydra(["seed=1"], [single("seed=1")])
+
+
+def test_a_file_that_changed_is_read_again(tmp_path, monkeypatch):
+    shutil.copytree(conf_dir(), tmp_path / "conf")
+    monkeypatch.setattr(module, "conf_dir", lambda: tmp_path / "conf")
+    assert composed(["start=rest"])["start"]["pitch"] == [-0.3, 0.0]
+    file = tmp_path / "conf" / "start" / "rest.yaml"
+    file.write_text(file.read_text().replace("pitch: [-0.3, 0.0]", "pitch: [-0.2, 0.0]"))
+    assert composed(["start=rest"])["start"]["pitch"] == [-0.2, 0.0]
