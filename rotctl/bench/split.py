@@ -115,7 +115,8 @@ def roll(scenario: Scenario) -> Split:
     """Simulate `SECONDS` with a clock between the stages."""
     settings = scenario.controller.settings
     clock = TimedSolver(make_solver(settings.solver))
-    timed = replace(scenario, controller=Controller(scenario.model, settings, clock))
+    controller = Controller(scenario.model, settings, clock)
+    timed = replace(scenario, controller=controller, observer=controller)
     steps = round(SECONDS * settings.rate)
     mj, tasks = scenario.model.mj, scenario.behaviour.tasks
     buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, 64, len(tasks), mj.nbody)
