@@ -40,7 +40,7 @@ from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.overrides import single
-from rotctl.plain import NOTHING, Way, dotted, find, leaves, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, exchanged, leaves, member, put, way
 from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
@@ -127,10 +127,9 @@ def _set_on_choices(overrides: list[str], found: list[Override]) -> dict[str, An
         key, value = _key(override), override.value()
         if choices(key):
             continue
-        before = find(data, way(key))
-        if before is NOTHING or isinstance(before, dict) or isinstance(value, dict):
+        data = exchanged(data, way(key), value)
+        if data is NOTHING:
             return None
-        data = put(data, way(key), value)
     return data
 
 

@@ -34,6 +34,17 @@ def find(data: Any, parts: Iterable[str | int]) -> Any:
     return data
 
 
+def exchanged(data: Any, parts: Way, value: Any) -> Any:
+    """The same data with another value in place of one; `NOTHING` where none of the two is one.
+
+    What has keys below it is no value.
+    """
+    before = find(data, parts)
+    if before is NOTHING or isinstance(before, dict) or isinstance(value, dict):
+        return NOTHING
+    return put(data, parts, value)
+
+
 def leaves(data: Any, parts: Way = ()) -> Iterator[tuple[Way, Any]]:
     """The way to every value that has nothing below it, and that value."""
     if isinstance(data, dict) and data:

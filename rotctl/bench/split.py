@@ -115,8 +115,7 @@ def roll(scenario: Scenario) -> Split:
     """Simulate `SECONDS` with a clock between the stages."""
     settings = scenario.controller.settings
     clock = TimedSolver(make_solver(settings.solver))
-    controller = Controller(scenario.model, settings, clock)
-    timed = replace(scenario, controller=controller, observer=controller)
+    timed = replace(scenario, controller=Controller(scenario.model, settings, clock))
     steps = round(SECONDS * settings.rate)
     mj, tasks = scenario.model.mj, scenario.behaviour.tasks
     buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, 64, len(tasks), mj.nbody)

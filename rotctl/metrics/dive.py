@@ -15,6 +15,7 @@ from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.flip import longest_flight, turn
 from rotctl.settings import STRICT, Finite, Positive
 
+NEAREST = 90.0  # [deg] off the target: beyond, another number of half revolutions is nearer
 COLUMNS = (
     Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),
     Column("entry_sag", "The part of it in the plane of the dive", "deg"),
@@ -70,7 +71,7 @@ def judge(
     turned = float(revolved[row]) if row is not None else math.nan
     rules = (
         (row is not None, "did not enter the water"),
-        (abs(turned - target) < 90.0, f"turned {turned:.0f} deg of {target:g}"),
+        (abs(turned - target) < NEAREST, f"turned {turned:.0f} deg of {target:g}"),
         (m.entry_angle < c.angle, f"enters {m.entry_angle:.1f} deg off the vertical"),
         (m.bent_most < c.bent, f"enters with a joint bent by {m.bent_most:.0f} deg"),
         (m.clearance > c.clearance, f"came within {m.clearance:.2f} m of the platform"),
@@ -83,7 +84,7 @@ def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -
     """Measure a run."""
     row = entry(log)
     if row is None:
-        return DiveMetrics(*[math.nan] * 5)
+        return DiveMetrics(*[math.nan] * len(COLUMNS))
     line = _mean(log, ("hand_l", "hand_r"))[row] - _mean(log, ("foot_l", "foot_r"))[row]
     ahead, left, up = frame(log)
     x, y, z = (float((line * axis).sum()) for axis in (ahead, left, up))

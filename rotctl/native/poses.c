@@ -19,8 +19,10 @@ static void pose_torques(Self* s, mjData* d, const Command* w) {
     s->scratch->M[m->M_rowadr[v] + m->M_rownnz[v] - 1] += h * damping;
     force[v] = s->tau_a[i] - s->bias[v], force[nv + v] = s->tau_b[i] - s->bias[v];
   }
-  for (int i = 0; w->pose_explicit && i < nu; i++) s->difference[i] = s->tau_a[i] - s->tau_b[i];
-  if (w->pose_explicit) return;
+  if (w->pose_explicit) {
+    for (int i = 0; i < nu; i++) s->difference[i] = s->tau_a[i] - s->tau_b[i];
+    return;
+  }
   for (int i = 0; i < ROOT; i++) force[i] = force[nv + i] = -s->bias[i];
   s->mj.factorM(m, s->scratch);
   s->mj.solveM(m, s->scratch, acceleration, force, 2);

@@ -139,8 +139,10 @@ class Episode:
                 return
             outside = parts.disturbance.apply(data, period, phase)
             mark("physics")
-            truth = state = parts.observer.read(data)
-            if not parts.senses.exact:
+            if parts.senses.exact:
+                truth = state = controller.read(data)
+            else:
+                truth = parts.observer.read(data)
                 state = controller.read(parts.senses.look(data))
             mark("state")
             self.left = _left(model.ground, truth)

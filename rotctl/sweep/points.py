@@ -73,7 +73,7 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
         InputError: the first thing that is wrong, in one line.
     """
     grids = [[_values(override) for override in grid] for grid in matrix]
-    if count(grids) > MOST_POINTS:
+    if sum(prod(map(len, grid)) for grid in grids) > MOST_POINTS:
         raise InputError(f"the sweep has more than {MOST_POINTS} points; make several sweeps")
     bases: Bases = {}
     parts: Parts = {}
@@ -82,11 +82,6 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
             texts = tuple(one.text for one in assignments)
             keys = tuple(one.key for one in assignments)
             yield Point(texts, keys, _config(assignments, bases, parts))
-
-
-def count(grids: Sequence[Sequence[Sequence[Any]]]) -> int:
-    """How many points there are."""
-    return sum(prod(map(len, grid)) for grid in grids)
 
 
 def _values(override: str) -> list[Assignment]:
@@ -160,10 +155,9 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
         if key not in parts:
             found = data
             for one in setting:
-                before = plain.find(found, one.way or ())
-                if before is plain.NOTHING or isinstance(before, dict):
+                found = plain.exchanged(found, one.way or (), one.value)
+                if found is plain.NOTHING:
                     return check(composed(texts))  # a new key, or an error for Hydra to tell
-                found = plain.put(found, one.way or (), one.value)
             parts[key] = found[name]
         made[name] = parts[key]
     return changed(base, made)
