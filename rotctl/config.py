@@ -92,10 +92,19 @@ def recorded(log: RunLog) -> Config:
     Raises:
         LogError: this rotctl cannot run it; one line that says why.
     """
+    return rebuilt(log.path, lambda: documents.from_yaml("config", log.config_yaml))
+
+
+def rebuilt(where: Path, data: Callable[[], Any]) -> Config:
+    """A config out of a run that was made earlier, checked as any other.
+
+    Raises:
+        LogError: as for `recorded`.
+    """
     try:
-        return check(documents.from_yaml("config", log.config_yaml))
+        return check(data())
     except InputError as error:
-        raise LogError(f"{log.path}: its config makes no run here: {error}") from None
+        raise LogError(f"{where}: its config makes no run here: {error}") from None
 
 
 def composed(overrides: list[str]) -> dict[str, Any]:

@@ -111,13 +111,7 @@ def from_json(text: str) -> Any:
         ValueError: it is none, or not plain.
     """
     try:
-        data = json.loads(
-            text,
-            parse_constant=_no_number,
-            parse_float=_finite,
-            parse_int=_short,
-            object_pairs_hook=_unique,
-        )
+        data = json.loads(text, **_PLAIN_NUMBERS, object_pairs_hook=_unique)
     except RecursionError:
         raise ValueError("nested too deeply") from None
     for value, depth in _walk(data):
@@ -125,6 +119,20 @@ def from_json(text: str) -> Any:
             raise ValueError("a text has a control character")
         if depth == DEEPEST and isinstance(value, dict | list):
             raise ValueError(f"nested more than {DEEPEST} deep")
+    return data
+
+
+def from_json_line(text: str) -> dict[str, Any]:
+    """The object of one line of ASCII, quickly where nothing in it asks for a closer look.
+
+    Raises:
+        ValueError: it is none, or not plain.
+    """
+    brackets = text.count("{") + text.count("[")
+    quick = brackets < _FEW and "\\" not in text and text.rstrip("\n").isprintable()
+    data = json.loads(text, **_PLAIN_NUMBERS) if quick else from_json(text)
+    if not isinstance(data, dict):
+        raise ValueError("no object")
     return data
 
 
@@ -230,3 +238,7 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         raise ValueError("a key comes twice")
     return found
+
+
+_FEW = 900  # brackets, so that no depth of them overflows a stack
+_PLAIN_NUMBERS: Any = {"parse_constant": _no_number, "parse_float": _finite, "parse_int": _short}

@@ -120,10 +120,10 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[Path]:
             os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
             yield part
             if durable:
-                _sync(part)
+                sync(part)
             os.replace(part, path)
             if durable:
-                _sync(path.parent)
+                sync(path.parent)
         finally:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
@@ -176,7 +176,8 @@ def _reason(error: OSError) -> str:
     return _REASONS.get(error.errno or 0) or error.strerror or str(error)
 
 
-def _sync(path: Path) -> None:
+def sync(path: Path) -> None:
+    """Have a file, or the names in a folder, on the disk on return."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

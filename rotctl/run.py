@@ -13,6 +13,8 @@ from rotctl import files
 from rotctl.config import Config, to_yaml
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, TrajectoryBuffer, collect, encode_run
+from rotctl.log.digest import simulated as hashed
+from rotctl.log.writer import whole
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
 from rotctl.scenario import Scenario, build
@@ -29,6 +31,7 @@ class Result:
         folder: holds `run.h5`, `summary.json` and `config.yaml`.
         summary: the summary row.
         already_there: True if nothing was simulated because the run was there.
+        trajectory: SHA-256 of what was simulated.
         replaced: why the log that was there was not used; empty if it was, or there was none.
         notice: what the user should know of how it was simulated; mostly empty.
     """
@@ -36,6 +39,7 @@ class Result:
     folder: Path
     summary: Summary
     already_there: bool
+    trajectory: str
     replaced: str = ""
     notice: str = ""
 
@@ -65,8 +69,8 @@ def run(
     replaced = ""
     if not force and os.path.lexists(folder / LOG_NAME):
         try:
-            log = open_published(folder, scenario.run_id)
-            return Result(folder, log.outcome, already_there=True)
+            log, trajectory = open_published(folder, scenario.run_id)
+            return Result(folder, log.outcome, True, trajectory)
         except LogError as error:
             replaced = str(error)
     with files.folder(folder, linked=False):
@@ -74,16 +78,28 @@ def run(
         publish(encoded, folder)
     notices = (scenario.controller.notice, scenario.stepper.notice)
     notice = "; ".join(filter(None, notices))
-    return Result(folder, encoded.summary, already_there=False, replaced=replaced, notice=notice)
+    return Result(folder, encoded.summary, False, encoded.trajectory, replaced, notice)
 
 
 def make(config: Config) -> EncodedRun:
-    """Simulate a config and write nothing: for workers that need not see the driver's disk.
+    """Simulate a config and write nothing.
 
     Raises:
         InputError: the config does not make a run.
     """
-    return _encoded(built(config), lambda: None)
+    return simulated(config, lambda summary: True)
+
+
+def simulated(config: Config, keeps: Callable[[Summary], bool]) -> EncodedRun:
+    """Simulate a config and write nothing.
+
+    Args:
+        keeps: whether the log of a run with that summary row is wanted.
+
+    Raises:
+        InputError: the config does not make a run.
+    """
+    return _encoded(built(config), lambda: None, keeps)
 
 
 def built(config: Config) -> Scenario:
@@ -96,25 +112,33 @@ def built(config: Config) -> Scenario:
         return build(config)
 
 
-def _encoded(scenario: Scenario, progress: Callable[[], object]) -> EncodedRun:
-    config, text = scenario.config, to_yaml(scenario.config)
+def _encoded(
+    scenario: Scenario,
+    progress: Callable[[], object],
+    keeps: Callable[[Summary], bool] = lambda summary: True,
+) -> EncodedRun:
     begin = time.perf_counter()
     buffer, ending = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
     summary = summarise(scenario, buffer, ending, wall)
-    log = encode_run(
-        buffer,
-        model_xml=scenario.model.mjcf,
-        attributes={
-            **origin(scenario),
-            "config": text,
-            "run_id": scenario.run_id,
-            "seed": config.seed,
-            "wall_time": wall,
-            "outcome": summary,
-        },
-    )
-    return EncodedRun(summary, log, text)
+    arrays, source = whole(buffer, scenario.model.mjcf), origin(scenario)
+    digest, log, text = hashed(arrays), b"", ""
+    if keeps(summary):
+        text = to_yaml(scenario.config)
+        log = encode_run(
+            buffer,
+            model_xml=scenario.model.mjcf,
+            attributes={
+                **source,
+                "config": text,
+                "run_id": scenario.run_id,
+                "seed": scenario.config.seed,
+                "wall_time": wall,
+                "outcome": summary,
+            },
+            digest=digest,
+        )
+    return EncodedRun(summary, log, text, source, wall, digest.hexdigest())
 
 
 def origin(scenario: Scenario) -> dict[str, Any]:

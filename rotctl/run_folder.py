@@ -1,8 +1,10 @@
 """A run's folder: its log, and beside it what people read without HDF5."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rotctl import files
 from rotctl.errors import LogError
@@ -19,13 +21,19 @@ class EncodedRun:
 
     Attributes:
         summary: the summary row.
-        log: the bytes of its `run.h5`.
-        config: as YAML.
+        log: the bytes of its `run.h5`; empty if nobody wants to keep it.
+        config: as YAML; empty without a log.
+        origin: code, versions and machine.
+        wall_time: of the simulation [s].
+        trajectory: SHA-256 of what was simulated.
     """
 
     summary: Summary
     log: bytes
     config: str
+    origin: Mapping[str, Any]
+    wall_time: float
+    trajectory: str
 
 
 def publish(run: EncodedRun, folder: Path) -> None:
@@ -39,14 +47,17 @@ def publish(run: EncodedRun, folder: Path) -> None:
         _write_beside(folder, run.summary, run.config)
 
 
-def open_published(folder: Path, run_id: str) -> RunLog:
+def open_published(folder: Path, run_id: str) -> tuple[RunLog, str]:
     """The log of the run in `folder`, all of it checked; puts back what is missing beside it.
+
+    Returns:
+        It, and the SHA-256 of what was simulated.
 
     Raises:
         LogError: the log there is not whole, or of another run.
     """
     log = RunLog.open(folder / LOG_NAME, linked=False)
-    log.verify()
+    trajectory = log.verify()
     if log.attributes["run_id"] != run_id:
         raise LogError(f"{log.path}: is run {log.attributes['run_id']}, expected {run_id}")
     outcome = log.outcome
@@ -54,9 +65,14 @@ def open_published(folder: Path, run_id: str) -> RunLog:
         require_verdict(outcome)
     except LogError as error:
         raise LogError(f"{log.path}: {error}") from None
-    if not all((folder / name).exists() for name in (SUMMARY_NAME, CONFIG_NAME)):  # after a kill
+    if not has_all_beside(folder):  # after a kill
         _write_beside(folder, outcome, str(log.attributes["config"]))
-    return log
+    return log, trajectory
+
+
+def has_all_beside(folder: Path) -> bool:
+    """Whether what people read lies beside the log."""
+    return all((folder / name).exists() for name in (SUMMARY_NAME, CONFIG_NAME))
 
 
 def _write_beside(folder: Path, summary: Summary, config: str) -> None:

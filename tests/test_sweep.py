@@ -104,6 +104,7 @@ def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
     for arguments, message in [
         (["seed=1,-2"], "seed=-2: must be greater than or equal to 0"),
         (["seed=1", "--retries", "-1"], "--retries=-1: must be at least 0"),
+        (["seed=1", "--keep", "sample:x"], "--keep=sample:x: valid: all, failures, rows, sample:N"),
         (["seed=1", "--jobs", "0"], "--jobs=0: valid: 1 to 1024"),
         (["+experiment=no"], "+experiment=no: no such experiment; valid: ablations, "),
     ]:

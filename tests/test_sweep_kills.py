@@ -13,13 +13,14 @@ from sweep_cli import (
     held_after,
     kill,
     logs,
-    published,
     start,
     until,
     workers,
 )
+from sweep_cli import published as published_logs
 
 from rotctl.log import RunLog
+from rotctl.results import index
 from rotctl.results.manifest import read
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
@@ -40,17 +41,23 @@ def whole(out, count):
     assert sorted(read(out)) == sorted(log.parent.name for log in logs(out))
 
 
+def rows(out):
+    """Run id -> row of the runs that are done, as their index has them."""
+    return index.read(out).rows
+
+
 def progress(driver, out, count):
-    until(lambda: len(logs(out)) >= count or driver.poll() is not None)
+    until(lambda: len(rows(out)) >= count or driver.poll() is not None)
 
 
-def torture(out, count, kills, chance):
+def torture(out, count, kills, chance, keep="all"):
     """Kill the driver or a worker at random times, until all is done."""
-    arguments = ["sweep", *grid(count), "--out", out, "--jobs", "2", "--quiet"]
+    arguments = ["sweep", *grid(count), "--out", out, "--jobs", "2", "--quiet", "--keep", keep]
+    published = published_logs if keep == "all" else rows
     seen = {}
     for turn in range(kills):
         driver = start(*arguments)
-        target = min(len(logs(out)) + chance.randint(1, max(1, count // kills)), count - 1)
+        target = min(len(rows(out)) + chance.randint(1, max(1, count // kills)), count - 1)
         progress(driver, out, target)
         if turn % 2:
             for pid in workers(driver.pid)[:1]:
@@ -64,16 +71,23 @@ def torture(out, count, kills, chance):
     assert finish(*arguments)[0] == 0
     now = published(out)
     assert {name: now[name] for name in seen} == seen
-    whole(out, count)
+    assert sorted(rows(out)) == sorted(read(out))
+    assert len(rows(out)) == count
+    # Of each run one line: none was done twice.
+    assert (out / index.INDEX_NAME).read_text().count('"outcome"') == count
+    if keep == "all":
+        whole(out, count)
 
 
-def test_killed_again_and_again(tmp_path):
-    torture(tmp_path, 8, 2, random.Random(0))
+@pytest.mark.parametrize("keep", ["all", "rows"])
+def test_killed_again_and_again(tmp_path, keep):
+    torture(tmp_path, 6, 2, random.Random(0), keep)
 
 
 @pytest.mark.slow
-def test_two_hundred_runs_killed_ten_times(tmp_path):
-    torture(tmp_path, 200, 10, random.Random(1))
+@pytest.mark.parametrize("keep", ["all", "rows"])
+def test_two_hundred_runs_killed_ten_times(tmp_path, keep):
+    torture(tmp_path, 200, 10, random.Random(1), keep)
 
 
 def test_a_killed_worker_is_replaced_and_its_run_retried(tmp_path):
@@ -124,9 +138,9 @@ def test_an_interrupt_leaves_a_sweep_that_can_go_on(tmp_path, number):
     assert stderr.splitlines()[-1] == ("rotctl: interrupted; the same command does what is left")
     assert len(children) == 2
     assert not [pid for pid in children if os.path.exists(f"/proc/{pid}")]
-    before = published(tmp_path)
+    before = published_logs(tmp_path)
     assert len(before) == 3
     assert not list(tmp_path.glob("**/*.part"))
     assert finish("sweep", short, "seed=range(0,4)", "--out", tmp_path, "--quiet")[0] == 0
     assert len(logs(tmp_path)) == 4
-    assert before.items() <= published(tmp_path).items()
+    assert before.items() <= published_logs(tmp_path).items()

@@ -3,11 +3,15 @@
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
 from rotctl.commands.bars import bar
 from rotctl.errors import InputError
 from rotctl.wording import one_line, readable
+
+if TYPE_CHECKING:
+    from rotctl.results.index import Row
 
 
 def add_run(commands: Commands) -> None:
@@ -26,7 +30,8 @@ def add_run(commands: Commands) -> None:
         "--again",
         type=Path,
         metavar="RUN.h5",
-        help="the config of that log, instead of KEY=VALUE (rotctl verify compares, too)",
+        help="the config of that log, instead of KEY=VALUE (rotctl verify compares, too); "
+        "DIR/<run id> of a sweep that kept its row alone: the same bits again, or exit code 1",
     )
     command.add_argument(
         "--json", action="store_true", help="print the summary row as JSON on stdout"
@@ -41,14 +46,17 @@ def add_run(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
-    from rotctl.config import load, recorded
+    from rotctl.config import load, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
     from rotctl.run import run
 
+    row = None
     if arguments.again is None:
         config = load(arguments.overrides)
     elif arguments.overrides:
         raise InputError(f"--again repeats a run as it was: leave out {arguments.overrides[0]!r}")
+    elif row := _row_at(arguments.again):
+        config = rebuilt(arguments.again, lambda: row.config)
     else:
         config = recorded(RunLog.open(log_file(arguments.again)))
     steps = round(config.duration * config.controller.rate)
@@ -60,6 +68,9 @@ def run(arguments: argparse.Namespace) -> int:
         notices.append(f"already there, not redone (--force redoes it): {result.folder}")
     if result.replaced:
         notices.append(f"simulated again, the log there could not be used: {result.replaced}")
+    other = row is not None and result.trajectory != row.trajectory
+    if row is not None and not other:
+        notices.append(f"the same bits as in the sweep: run {row.run_id}")
     for notice in filter(None, notices if not arguments.quiet else []):
         print(one_line(notice), file=sys.stderr)
     picture = _filmstrip_beside(result.folder / LOG_NAME) if arguments.filmstrip else ""
@@ -72,7 +83,21 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"log        {result.folder / LOG_NAME}")
         if picture:
             print(f"filmstrip  {picture}")
-    return 1 if result.broke_down else 0
+    if row is not None and other:
+        from rotctl.results.code import code_of
+
+        made_by = f"run {row.run_id}, made by {code_of(row.origin)}"
+        print(f"rotctl: other bits than in the sweep: {one_line(made_by)}", file=sys.stderr)
+    return 1 if result.broke_down or other else 0
+
+
+def _row_at(path: Path) -> "Row | None":
+    """The row of a run whose log was not kept; what is looked for, where nothing lies."""
+    if path.is_file():
+        return None
+    from rotctl.results.index import row_at
+
+    return row_at(path)
 
 
 def _filmstrip_beside(log: Path) -> str:

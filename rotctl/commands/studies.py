@@ -15,7 +15,7 @@ def add_sweep(commands: Commands) -> None:
     command = commands.add_parser(
         "sweep",
         help="simulate many runs, and go on where it ended",
-        description="Simulate every point of a grid into DIR/<run id>/run.h5, in Hydra's sweep "
+        description="Simulate every point of a grid into DIR, in Hydra's sweep "
         "syntax: a=x,y  'seed=range(0,100)'  'start=glob(*)'  or +experiment=NAME. Runs that are "
         "there are not redone, so that the same command goes on where it was cut off.",
     )
@@ -27,6 +27,12 @@ def add_sweep(commands: Commands) -> None:
     command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
     command.add_argument(
         "--retries", type=int, default=2, help="for a run whose worker died [%(default)s]"
+    )
+    command.add_argument(
+        "--keep",
+        default="all",
+        metavar="WHAT",
+        help="logs: all, failures, sample:N or rows, as rows are kept of all runs [%(default)s]",
     )
     command.add_argument("--dry-run", action="store_true", help="only say what there is to do")
     command.add_argument("--strict", action="store_true", help="redo what other code has made")
@@ -41,6 +47,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from rotctl.results import experiments
+    from rotctl.sweep import keep
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
@@ -51,19 +58,20 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
+    kept = keep.read(arguments.keep)
     watched = None if not arguments.quiet else True  # None: only on a terminal
     matrix = experiments.matrix(arguments.overrides)
     with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
         runs = planned(bar)
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         if arguments.dry_run:
-            print(without_running(runs, arguments.out, engine.workers))
+            print(without_running(runs, arguments.out, engine.workers, kept))
             return 0
         with locked(arguments.out):
             if experiment := experiments.named(arguments.overrides):
                 experiments.copy_into(arguments.out, experiment)
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
-                there = plan(runs, arguments.out, arguments.strict, looking.update)
+                there = plan(runs, arguments.out, arguments.strict, looking.update, kept)
             if not arguments.quiet:
                 print(at_the_start(there, arguments.out, engine.where), file=sys.stderr, flush=True)
             with shown(len(runs), len(there.done), arguments.quiet) as progress:

@@ -4,28 +4,25 @@ import json
 from collections.abc import Iterator, Mapping
 from hashlib import sha256
 from math import prod
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.log.schema import ATTRIBUTES, SCHEMA
 
+if TYPE_CHECKING:
+    from hashlib import _Hash as Hash
+
 _NOT_CONTENT = ("content_sha256", "complete")
 _BLOCK_BYTES = 2**24
 
 
-def content_sha256(
-    arrays: Mapping[str, NDArray[Any]], attributes: Mapping[str, bool | int | float | str]
-) -> str:
-    """Hashes all datasets in schema order (the model included), then all root attributes.
+def simulated(arrays: Mapping[str, NDArray[Any]]) -> "Hash":
+    """Hashes all datasets in schema order, the model included: what a repetition has again.
 
     Args:
         arrays: schema path -> array or open dataset, all that a log of this version has.
-        attributes: root attribute -> value; ``content_sha256`` and ``complete`` are left out.
-
-    Returns:
-        64 hexadecimal digits.
     """
     digest = sha256()
     for name in filter(arrays.__contains__, SCHEMA):
@@ -33,6 +30,20 @@ def content_sha256(
         digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
         for block in _blocks(array):
             digest.update(block.tobytes())
+    return digest
+
+
+def content_sha256(simulated: "Hash", attributes: Mapping[str, bool | int | float | str]) -> str:
+    """Hashes all root attributes after the datasets.
+
+    Args:
+        simulated: see there; it is left as it is.
+        attributes: root attribute -> value; ``content_sha256`` and ``complete`` are left out.
+
+    Returns:
+        64 hexadecimal digits.
+    """
+    digest = simulated.copy()
     content = {name: attributes[name] for name in ATTRIBUTES if name not in _NOT_CONTENT}
     digest.update(json.dumps(content).encode())
     return digest.hexdigest()

@@ -22,11 +22,20 @@ def outcome_of(text: str) -> dict[str, Any]:
         raise LogError("outcome is not JSON") from None
     if not isinstance(outcome, dict):
         raise LogError("outcome is not a JSON object")
+    plain_outcome(outcome)
+    return outcome
+
+
+def plain_outcome(outcome: Mapping[str, Any]) -> None:
+    """Check that all values are numbers of a possible size, texts or null.
+
+    Raises:
+        LogError: one is not.
+    """
     for name, value in outcome.items():
         number = isinstance(value, int | float) and abs(value) < LARGE
         if not (number or value is None or isinstance(value, str)):
             raise LogError(f"outcome has no plain value for {name!r:.60}")
-    return outcome
 
 
 def require_verdict(outcome: Mapping[str, Any]) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rotctl.errors import LogError
 from rotctl.log import untrusted
-from rotctl.log.digest import content_sha256
+from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.outcome import outcome_of
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
 
@@ -136,8 +136,11 @@ class RunLog:
         self._require_name(name)
         return SCHEMA[name].description
 
-    def verify(self) -> None:
+    def verify(self) -> str:
         """Reads everything and compares it with the hash that the writer left.
+
+        Returns:
+            SHA-256 of what was simulated, the same for a repetition.
 
         Raises:
             LogError: the file is damaged.
@@ -145,9 +148,11 @@ class RunLog:
         with untrusted.opened(self.path, linked=True) as file:
             # Block by block: a log may be larger than the memory.
             datasets = {name: self._checked(file, name) for name in self.names}
-            found = content_sha256(datasets, self.attributes)
+            whole = simulated(datasets)
+        found = content_sha256(whole, self.attributes)
         if found != self.attributes["content_sha256"]:
             raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
+        return whole.hexdigest()
 
     def _read(self, file: h5py.File, name: str) -> NDArray[Any]:
         return np.asarray(self._checked(file, name)[()])

@@ -9,7 +9,7 @@ import json
 from collections.abc import Mapping
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log.buffer import TrajectoryBuffer
-from rotctl.log.digest import content_sha256
+from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.schema import (
     ATTRIBUTES,
     GROUPS,
@@ -29,6 +29,9 @@ from rotctl.log.schema import (
     DatasetSpec,
     check_layout,
 )
+
+if TYPE_CHECKING:
+    from hashlib import _Hash as Hash
 
 _CHUNK_BYTES = 2**20
 _GZIP_LEVEL = 4
@@ -69,11 +72,24 @@ def write_log(path: str | Path, content: bytes) -> None:
     files.replace(Path(path), content, durable=True)
 
 
+def whole(
+    run: TrajectoryBuffer | Mapping[str, NDArray[Any]], model_xml: str
+) -> dict[str, NDArray[Any]]:
+    """Returns all arrays of a run, its model with them; arguments as for ``write_run``.
+
+    Raises:
+        InputError: the model's text cannot be stored.
+    """
+    arrays = dict(run.arrays() if isinstance(run, TrajectoryBuffer) else run)
+    return {**arrays, MODEL_PATH: np.array(_utf8("model_xml", model_xml))}
+
+
 def encode_run(
     run: TrajectoryBuffer | Mapping[str, NDArray[Any]],
     *,
     model_xml: str,
     attributes: Mapping[str, Any],
+    digest: "Hash | None" = None,
 ) -> bytes:
     """Returns the HDF5 file of a run; equal input gives equal bytes.
 
@@ -81,15 +97,15 @@ def encode_run(
         run: as for ``write_run``.
         model_xml: as for ``write_run``.
         attributes: as for ``write_run``.
+        digest: of ``whole(run, model_xml)``, where it is there already; see ``simulated``.
 
     Raises:
         InputError: an array, an attribute or the model does not fit the schema.
     """
-    arrays = dict(run.arrays() if isinstance(run, TrajectoryBuffer) else run)
-    arrays[MODEL_PATH] = np.array(_utf8("model_xml", model_xml))
+    arrays = whole(run, model_xml)
     check_layout({name: (array.dtype, array.shape) for name, array in arrays.items()})
     root = _root_attributes(attributes)
-    root["content_sha256"] = content_sha256(arrays, root)
+    root["content_sha256"] = content_sha256(digest or simulated(arrays), root)
 
     memory = io.BytesIO()
     with h5py.File(memory, "w") as file:

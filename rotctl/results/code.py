@@ -5,6 +5,7 @@ from typing import Any
 
 from rotctl.documents import from_json
 from rotctl.errors import LogError
+from rotctl.same import kept
 
 
 def code_version(attributes: Mapping[str, Any]) -> str:
@@ -25,3 +26,6 @@ def code_version(attributes: Mapping[str, Any]) -> str:
     commit = str(attributes["git_commit"])[:7]
     changed = " with changes" if attributes["git_dirty"] else ""
     return f"rotctl {own} ({commit}{changed}), mujoco {physics}"
+
+
+code_of = kept(most=1000)(code_version)  # of rows, which share what they have in common

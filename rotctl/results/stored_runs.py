@@ -12,7 +12,10 @@ from typing import Any
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, read_attributes
 from rotctl.log.outcome import outcome_of, require_verdict
-from rotctl.results.code import code_version
+from rotctl.results import index
+from rotctl.results.code import code_of, code_version
+from rotctl.results.configs import config_of
+from rotctl.results.index import INDEX_NAME, Row
 from rotctl.results.manifest import MANIFEST_NAME, Entry, read
 
 ORIGIN = ("machine", "versions", "git_commit", "git_dirty", "wall_time")
@@ -28,8 +31,8 @@ class StoredRun:
         reason: why there is no result, if that is known.
         outcome: the summary row; empty if there is no result.
         code: the code that made it.
-        log: its log, relative to the folder.
-        config: its config, as YAML.
+        log: its log, relative to the folder; empty if it was not kept.
+        config: its config; empty if there is no result.
         values: what the sweep says of its config, if a sweep made it.
         origin: the log's `machine`, `versions`, `git_commit`, `git_dirty` and `wall_time`.
     """
@@ -40,7 +43,7 @@ class StoredRun:
     outcome: Mapping[str, Any] = field(default_factory=dict)
     code: str = ""
     log: str = ""
-    config: str = ""
+    config: Mapping[str, Any] = field(default_factory=dict)
     values: Mapping[str, Any] = field(default_factory=dict)
     origin: Mapping[str, Any] = field(default_factory=dict)
 
@@ -53,25 +56,61 @@ def stored_runs(folder: Path) -> tuple[list[StoredRun], list[str]]:
     """
     if not os.path.isdir(folder):
         raise InputError(f"{folder}: no such folder")
-    names = (LOG_NAME, MANIFEST_NAME)
-    paths = sorted(Path(at, name) for at, _, inside in os.walk(folder) for name in inside)
+    places, notes = _places(folder)
     entries: dict[str, Entry] = {}
     runs: dict[str, StoredRun] = {}
     copies = []
-    for path in (path for path in paths if path.name in names):
-        if path.name == MANIFEST_NAME:
-            entries |= read(path.parent)
+    for path, row in sorted(places, key=lambda place: place[0]):
+        if path.endswith(MANIFEST_NAME):
+            entries |= read(Path(path).parent)
             continue
-        run = _logged(path, str(path.relative_to(folder)))
+        log = os.path.relpath(path, folder)
+        run = _indexed(row, log if row.log else "") if row else _logged(Path(path), log)
         if run.run_id in runs and runs[run.run_id].status == DONE:
-            copies.append(f"{path}: is the run of {runs[run.run_id].log} again, counted once")
+            first = runs[run.run_id].log or "a row"
+            copies.append(f"{path}: is the run of {first} again, counted once")
         else:
             runs[run.run_id] = run
     missing = [_unlogged(entry) for name, entry in entries.items() if name not in runs]
     if not runs and not missing:
         raise InputError(f"{folder}: no runs in it; rotctl sweep --out {folder} makes some")
     known = [_with_values(run, entries) for run in runs.values()]
-    return known + missing, copies
+    return known + missing, notes + copies
+
+
+def _places(folder: Path) -> tuple[list[tuple[str, Row | None]], list[str]]:
+    """Where logs and manifests lie below a folder, with the rows of indices; and notes.
+
+    An index is believed of a log that nobody has touched since, and where none was kept.
+    """
+    places: list[tuple[str, Row | None]] = []
+    notes = []
+    for at, inside, names in os.walk(folder):
+        places += [(f"{at}/{name}", None) for name in names if name in (LOG_NAME, MANIFEST_NAME)]
+        if INDEX_NAME not in names:
+            continue
+        listed, there = index.read(Path(at)), set(inside)
+        if listed.damaged:
+            notes.append(f"{at}/{INDEX_NAME}: {listed.damaged} lines damaged, left out")
+        for row in listed.rows.values():
+            log = f"{at}/{row.run_id}/{LOG_NAME}"
+            if (index.stamp(log) if row.run_id in there else None) == row.log:
+                there.discard(row.run_id)
+                places.append((log, row))
+        inside[:] = there
+    return places, notes
+
+
+def _indexed(row: Row, log: str) -> StoredRun:
+    return StoredRun(
+        row.run_id,
+        DONE,
+        outcome=row.outcome,
+        code=code_of(row.origin),
+        log=log,
+        config=row.config,
+        origin={**row.origin, "wall_time": row.wall_time},
+    )
 
 
 def _logged(path: Path, log: str) -> StoredRun:
@@ -85,7 +124,7 @@ def _logged(path: Path, log: str) -> StoredRun:
             outcome=outcome,
             code=code_version(attributes),
             log=log,
-            config=str(attributes["config"]),
+            config=config_of(str(attributes["config"])),
             origin={name: attributes[name] for name in ORIGIN},
         )
     except LogError as error:

@@ -1,17 +1,13 @@
 """Runs as one tidy table: a row a run, also where there is no result; config keys as columns."""
 
 import json
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from rotctl.documents import from_yaml
-from rotctl.errors import InputError
 from rotctl.results.keys import value_at
 from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
@@ -21,7 +17,6 @@ _TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
     *("n", "succeeded", "success_rate", "success_low", "success_high", "no_result", "label"),
 )
-_SEED = re.compile(r"^seed: (\d{1,19})\n", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -52,7 +47,7 @@ def table(folder: Path) -> Table:
 
 def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
     """Runs that were found, in the order of their keys."""
-    configs = {run.run_id: config_of(run.config) for run in runs if run.config}
+    configs = {run.run_id: run.config for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
     keys += [key for key in _differing(configs.values()) if key not in keys]
     if len(keys) > MOST:
@@ -104,28 +99,6 @@ def _missing(runs: Iterable[StoredRun]) -> list[str]:
         many = f"{count} runs of the sweep are" if count > 1 else "1 run of the sweep is"
         notes.append(f"{many} not there; the same command does what is left")
     return notes
-
-
-def config_of(text: str) -> dict[str, Any]:
-    """The config of a log; runs differ mostly in their seed, so the rest is parsed once."""
-    seed = _SEED.search(text)
-    if not seed:
-        return _parsed(text)
-    return {**_parsed(without_seed(text)), "seed": int(seed[1])}
-
-
-def without_seed(text: str) -> str:
-    """The config of a log less the line with its seed."""
-    return _SEED.sub("", text)
-
-
-@cache
-def _parsed(text: str) -> dict[str, Any]:
-    try:
-        data = from_yaml("", text)
-    except InputError:
-        return {}
-    return data if isinstance(data, dict) else {}
 
 
 def _differing(configs: Iterable[Mapping[str, Any]]) -> list[str]:

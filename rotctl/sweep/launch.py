@@ -4,19 +4,24 @@ Workers hand a run's bytes back, and the driver alone writes: the workers need n
 system, and what an orphan of a killed driver still finishes cannot be published twice.
 """
 
-from collections.abc import Callable, Iterable
+import json
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
+from rotctl.config import to_dict
 from rotctl.errors import InputError
+from rotctl.log import LOG_NAME
 from rotctl.results import manifest
+from rotctl.results.index import ORIGIN, Row, Writer, stamp
 from rotctl.results.manifest import Entry
-from rotctl.run import make
-from rotctl.run_folder import publish
+from rotctl.run_folder import EncodedRun, publish
 from rotctl.summary import Summary, broke_down
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned
+from rotctl.sweep.task import carry_out, ordered
 
 
 @dataclass(frozen=True)
@@ -84,20 +89,51 @@ def launch(
         entries[run.run_id] = Entry(run.run_id, {**earlier, **run.values})
     manifest.write(folder, entries.values())
     progress(so_far)
+    orders = [ordered(run.config, plan.wish[run.run_id]) for run in plan.left]
+    rows = Writer(folder, plan.index)
     try:
-        with closing(engine.map(make, [run.config for run in plan.left], retries)) as results:
+        for row in plan.unlisted:
+            rows.add(row)
+        with closing(engine.map(carry_out, orders, retries)) as results:
             for index, result in results:
                 run = plan.left[index]
                 if isinstance(result, Failure):
                     entries[run.run_id] = replace(entries[run.run_id], failure=result.reason)
                     so_far = so_far.plus(run.run_id, result)
                 else:
-                    publish(result, folder / run.run_id)
+                    _put(result, run, folder, rows)
                     so_far = so_far.plus(run.run_id, result.summary)
                 progress(so_far)
     except BaseException:
         with suppress(InputError):  # the first trouble is the one to tell
             manifest.write(folder, entries.values())
         raise
+    finally:
+        rows.close()
     manifest.write(folder, entries.values())
     return so_far
+
+
+def _put(made: EncodedRun, run: Planned, folder: Path, rows: Writer) -> None:
+    """First its log, if it is kept, then its row: a row never speaks of a log that is not there."""
+    place = folder / run.run_id
+    if made.log:
+        publish(made, place)
+    there = stamp(place / LOG_NAME) if made.log else None
+    origin = {name: _text(made.origin[name]) for name in ORIGIN}
+    rows.add(
+        Row(
+            run.run_id,
+            to_dict(run.config),
+            made.summary,
+            origin,
+            made.wall_time,
+            made.trajectory,
+            there,
+        )
+    )
+
+
+def _text(value: Any) -> Any:
+    """As a log's attributes have it."""
+    return json.dumps(value) if isinstance(value, Mapping) else value

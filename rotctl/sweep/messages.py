@@ -8,22 +8,30 @@ from dataclasses import replace
 from pathlib import Path
 
 from rotctl.log import LOG_NAME
+from rotctl.results import index
 from rotctl.run import make
+from rotctl.sweep.keep import Keep
 from rotctl.sweep.launch import Tally
-from rotctl.sweep.plan import Plan, Planned
+from rotctl.sweep.plan import Plan, Planned, suffices
 from rotctl.sweep.progress import duration
 
 FEW = 5  # runs of a dry run that are listed
 TRIAL = 2.0  # [s] of simulated time, to estimate the whole
 
 
-def without_running(runs: list[Planned], folder: Path, workers: int) -> str:
+def without_running(runs: list[Planned], folder: Path, workers: int, keep: Keep) -> str:
     """What there is to do, with an estimate of the time from a short trial of the first run.
 
     Raises:
         InputError: the first run cannot be simulated.
     """
-    left = [run for run in runs if not os.path.lexists(folder / run.run_id / LOG_NAME)]
+    listed, wish = index.read(folder).rows, keep.of(run.run_id for run in runs)
+    left = [
+        run
+        for run in runs
+        if not os.path.lexists(folder / run.run_id / LOG_NAME)
+        and (run.run_id not in listed or not suffices(listed[run.run_id], wish(run.run_id)))
+    ]
     lines = [f"{len(runs)} runs, {len(left)} of them not yet in {folder}"]
     lines += [f"  {run.run_id}  {_values(run)}" for run in left[:FEW]]
     if len(left) > FEW:

@@ -1,7 +1,7 @@
 """What a sweep has to do: its runs by id, less those whose logs are there and whole."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -9,10 +9,14 @@ from typing import Any
 from rotctl.config import Config
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, collect
-from rotctl.results.code import code_version
-from rotctl.run_folder import open_published
+from rotctl.results import index
+from rotctl.results.code import code_of, code_version
+from rotctl.results.configs import config_of
+from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
+from rotctl.run_folder import has_all_beside, open_published
 from rotctl.scenario import model_of, run_id
 from rotctl.summary import Summary
+from rotctl.sweep.keep import Keep, kept
 from rotctl.sweep.points import Point
 
 
@@ -36,12 +40,18 @@ class Plan:
     Attributes:
         done: run id -> summary of the runs that are there.
         left: the runs to do.
+        wish: run id -> when its log is kept, of those.
+        index: of the folder.
+        unlisted: rows of logs that are there, and not in the index.
         replaced: why a log that was there has to be made again, one line each.
         other_code: code version -> how many runs of `done` it made, if it is not this code.
     """
 
     done: dict[str, Summary] = field(default_factory=dict)
     left: list[Planned] = field(default_factory=list)
+    wish: dict[str, str] = field(default_factory=dict)
+    index: Index = field(default_factory=Index)
+    unlisted: list[Row] = field(default_factory=list)
     replaced: list[str] = field(default_factory=list)
     other_code: dict[str, int] = field(default_factory=dict)
 
@@ -62,44 +72,72 @@ def planned(points: Iterable[Point]) -> list[Planned]:
 
 
 def plan(
-    runs: Iterable[Planned],
+    runs: Sequence[Planned],
     folder: Path,
     strict: bool = False,
     progress: Callable[[], object] = lambda: None,
+    keep: Keep = Keep(),  # noqa: B008 (frozen)
 ) -> Plan:
-    """Compare the runs with the logs in `folder`; a damaged log is set aside as `.corrupt`.
+    """Compare the runs with what is in `folder`; a damaged log is set aside as `.corrupt`.
+
+    Of a log that lies there as the index has it, nothing is read.
 
     Args:
         strict: do again what other code has made.
         progress: called after every run.
+        keep: whose logs shall be there.
 
     Raises:
-        InputError: a damaged log cannot be set aside.
+        InputError: a damaged log cannot be set aside, or the index cannot be read.
     """
-    sorted_out, this_code = Plan(), code_version(collect())
+    found, this_code = Plan(index=index.read(folder)), code_version(collect())
+    if count := found.index.damaged:
+        found.replaced.append(f"{folder / INDEX_NAME}: {count} lines damaged, left out")
+    wish = keep.of(run.run_id for run in runs)
     for run in runs:
-        path = folder / run.run_id / LOG_NAME
-        if not os.path.lexists(path):
-            sorted_out.left.append(run)
-            progress()
-            continue
-        try:
-            log = open_published(path.parent, run.run_id)
-            code, outcome = code_version(log.attributes), log.outcome
-        except LogError as error:
-            _set_aside(path)
-            sorted_out.replaced.append(f"{error}; kept as {path.name}.corrupt")
-            sorted_out.left.append(run)
+        wanted = wish(run.run_id)
+        row = _there(run.run_id, folder, wanted, found)
+        code = code_of(row.origin) if row else ""
+        if row and code != this_code and strict:
+            found.replaced.append(f"{folder / run.run_id / LOG_NAME}: made by {code}")
+            row = None
+        if row is None:
+            found.left.append(run)
+            found.wish[run.run_id] = wanted
         else:
-            if code != this_code and strict:
-                sorted_out.replaced.append(f"{path}: made by {code}")
-                sorted_out.left.append(run)
-            else:
-                sorted_out.done[run.run_id] = outcome
-                if code != this_code:
-                    sorted_out.other_code[code] = sorted_out.other_code.get(code, 0) + 1
+            found.done[run.run_id] = dict(row.outcome)
+            if code != this_code:
+                found.other_code[code] = found.other_code.get(code, 0) + 1
         progress()
-    return sorted_out
+    return found
+
+
+def suffices(row: Row, wish: str) -> bool:
+    """Whether a row without a log is all that is wanted of its run."""
+    return row.log is None and not kept(wish, bool(row.outcome["success"]))
+
+
+def _there(run_id: str, folder: Path, wish: str, found: Plan) -> Row | None:
+    """The row of a run that is done; None if it is to be done, also for its log's sake."""
+    path, row = folder / run_id / LOG_NAME, found.index.rows.get(run_id)
+    lies = index.stamp(path)
+    if row and lies == row.log and (has_all_beside(path.parent) if lies else suffices(row, wish)):
+        return row
+    if not os.path.lexists(path):
+        return None
+    try:
+        log, trajectory = open_published(path.parent, run_id)
+        origin = {name: log.attributes[name] for name in ORIGIN}
+        code_version(origin)
+        config, wall = config_of(log.config_yaml), float(log.attributes["wall_time"])
+        row = Row(run_id, config, log.outcome, origin, wall, trajectory, lies)
+    except LogError as error:
+        _set_aside(path)
+        found.replaced.append(f"{error}; kept as {path.name}.corrupt")
+        return None
+    if index.fits(row):
+        found.unlisted.append(row)
+    return row
 
 
 def _set_aside(path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import zlib
 
 import yaml
 
@@ -12,7 +13,7 @@ from fuzz.nasty import changed, dumped, mangled, text
 def sweep(rng, samples, here):
     shutil.copytree(samples.sweep, here / "d")
     files = [path for path in sorted((here / "d").rglob("*")) if path.is_file()]
-    files += [here / "d" / name for name in ("sweep.jsonl", "experiment-x.yaml")]  # more often
+    files += [here / "d" / name for name in ("sweep.jsonl", "runs.jsonl", "experiment-x.yaml")]
     for path in dict.fromkeys(rng.choices(files, k=rng.choice((1, 1, 2)))):
         if rng.random() < 0.25:
             other(rng, path, here)
@@ -21,6 +22,8 @@ def sweep(rng, samples, here):
             changed(rng, rng.choice(lines))
             lines += [rng.choice(lines)] * rng.choice((0, 0, 1, 50))
             path.write_bytes(b"".join(json.dumps(line).encode() + b"\n" for line in lines))
+        elif path.name == "runs.jsonl" and rng.random() < 0.6:
+            path.write_bytes(b"".join(_rows(rng, path.read_bytes())))
         elif path.suffix == ".yaml" and rng.random() < 0.6:
             path.write_bytes(dumped(rng, changed(rng, yaml.safe_load(samples.experiment))))
         else:
@@ -37,6 +40,18 @@ def sweep(rng, samples, here):
         return Case(["summarise", "d", "--by", f"behaviour,{text(rng)}".replace("\0", "?")])
     into = rng.choice((["--out", "o"], ["--out", "d"], []))
     return Case([command, "d", *(into if command == "report" else [])], drawn=rng.random() < 0.04)
+
+
+def _rows(rng, content):
+    """The lines of an index, of which one says something else under a checksum that fits."""
+    lines = content.splitlines(keepends=True)
+    i = rng.randrange(len(lines))
+    data = json.loads(lines[i])
+    del data["crc"]
+    changed(rng, data)
+    body = b'", ' + json.dumps(data).encode()[1:]
+    lines[i] = b'{"crc": "%08x' % zlib.crc32(body) + body + b"\n"
+    return lines
 
 
 def against(rng, samples, here):

@@ -10,7 +10,7 @@ from rotctl.report.site import pages, texts
 from rotctl.report.site.charts import charts
 from rotctl.report.site.folder import write
 from rotctl.report.site.grid import grid
-from rotctl.report.site.origin import config_hash, origin
+from rotctl.report.site.origin import origin
 from rotctl.report.site.pictures import SCRIPT, Picture, pictures
 from rotctl.report.site.rows import Row
 from rotctl.report.site.study import (
@@ -24,6 +24,7 @@ from rotctl.report.site.study import (
     warnings,
 )
 from rotctl.report.site.words import QUANTITIES, Names
+from rotctl.results.configs import config_hash
 from rotctl.results.groups import grouped
 from rotctl.results.sweeps import Sweep, sweeps
 
@@ -112,7 +113,7 @@ def _shown(row: Row, study: Study, name: str, files: Files | None) -> Shown:
     made = []
     if files is not None:
         made = pictures(row, study.sweep.folder, name, files.__setitem__)
-    return Shown(row, f"row-{name}", made, config_hash(row.median) if row.median else "")
+    return Shown(row, f"row-{name}", made, config_hash(row.median.config) if row.median else "")
 
 
 def _page_of(sweep: Sweep, name: str, files: Files) -> str:

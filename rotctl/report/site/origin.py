@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,9 @@ import numpy as np
 from rotctl.documents import from_json
 from rotctl.report.site.words import NOTHING, count, number, ranges
 from rotctl.report.title import plain
-from rotctl.results.stored_runs import DONE, StoredRun
+from rotctl.results.configs import config_hash
+from rotctl.results.stored_runs import DONE
 from rotctl.results.sweeps import Sweep
-from rotctl.results.table import without_seed
 
 MOST = 8  # different values of a thing that are listed
 
@@ -21,6 +20,7 @@ MOST = 8  # different values of a thing that are listed
 def origin(sweep: Sweep) -> list[tuple[str, list[str]]]:
     """What -> its values with how many runs each, of the runs that have a result."""
     done = [run for run in sweep.runs.values() if run.status == DONE]
+    configs = (config_hash(run.config) for run in done)
     outcomes = [run.outcome for run in done]
     simulated = _sum(outcome.get("duration") for outcome in outcomes)
     took = _sum(run.origin.get("wall_time") for run in done)
@@ -33,17 +33,15 @@ def origin(sweep: Sweep) -> list[tuple[str, list[str]]]:
         ("Code", _counted(run.code for run in done)),
         ("Versions", _counted(_pairs(run.origin.get("versions")) for run in done)),
         ("Machine", _counted(_pairs(run.origin.get("machine")) for run in done)),
-        ("Configs without their seeds, by SHA-256", _counted(config_hash(run) for run in done)),
+        (
+            "Configs without their seeds, by SHA-256",
+            _counted(configs),
+        ),
         ("Simulated time", [f"{simulated / 60:.1f} min"]),
         ("Time in simulation, all processes together", [f"{took / 60:.1f} min"]),
         ("Real-time factor of a run", [_quartiles(factors)]),
         ("Control steps on which every solver failed", [_failed(failures)]),
     ]
-
-
-def config_hash(run: StoredRun) -> str:
-    """First digits of the SHA-256 of a run's config, its seed left out."""
-    return sha256(without_seed(run.config).encode()).hexdigest()[:12]
 
 
 def _failed(steps: Sequence[float]) -> str:

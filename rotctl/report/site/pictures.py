@@ -58,6 +58,9 @@ def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
 
 def _picture(role: str, run: StoredRun, folder: Path, name: str, put: Put) -> Picture:
     address, drawn, trouble = "", "", ""
+    if not run.log:
+        again = f"its log was not kept; rotctl run --again {folder / run.run_id} makes it again"
+        return Picture(role, run.run_id, "", "", "", f"no replay: {again}")
     try:
         log = RunLog.open(folder / run.log, linked=False)
         top = title(log)

@@ -15,7 +15,6 @@ from rotctl.results.experiments import Experiment
 from rotctl.results.keys import value_at
 from rotctl.results.stored_runs import StoredRun
 from rotctl.results.sweeps import Sweep
-from rotctl.results.table import config_of
 
 SHOWN = (
     "angular_velocity_mean",
@@ -86,7 +85,7 @@ def _row(
     median = sweep.runs[order[(len(order) - 1) // 2]] if order else None
     poorest = sweep.runs[order[0]] if order else None
     stalls = [v for v in done.get("longest_stall", []) if isinstance(v, float) and math.isfinite(v)]
-    config = config_of(median.config) if median else {}
+    config = median.config if median else {}
     return Row(
         name=values(where),
         about=_text(config, "behaviour.description"),

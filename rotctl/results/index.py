@@ -1,0 +1,318 @@
+"""`runs.jsonl`: a line for each finished run of a sweep: all of it but its trajectory.
+
+So what is done is known without a look into any log, and logs need not be kept. Lines are only
+ever added, each with a checksum: a line that a kill cut off, or a disk spoiled, is none. What many
+rows have in common - the parts of their configs, the columns, the code and the machine - is said
+once, in a line before them, by a name that is its hash; so two such files may be joined into one.
+"""
+
+import json
+import os
+import re
+import time
+import zlib
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rotctl import files
+from rotctl.documents import from_json_line
+from rotctl.errors import InputError, LogError
+from rotctl.log import LOG_NAME
+from rotctl.log.outcome import plain_outcome, require_verdict
+from rotctl.same import kept
+
+INDEX_NAME = "runs.jsonl"
+LARGEST = 300_000_000  # bytes of an index: a row takes 800, and 1,000 more with gains of its own
+LONGEST = 4_000_000  # bytes of a line
+SYNC_EVERY = 1.0  # [s] a loss of power may cost that much; a kill costs nothing
+SMALL = 200  # characters of what is not worth a name
+REFERENCE = "="  # the only key of what stands for something that has a name
+ORIGIN = {"machine": str, "versions": str, "git_commit": str, "git_dirty": bool}
+_BEFORE = b'{"crc": "'
+_ID, _DIGEST = re.compile(r"[0-9a-f]{12}"), re.compile(r"[0-9a-f]{64}")
+
+
+class Stamp(NamedTuple):
+    """By which a file is known again that nobody has touched: its size and when it was written."""
+
+    size: int
+    time: int  # [ns]
+
+
+class Row(NamedTuple):
+    """A finished run.
+
+    Attributes:
+        config: as plain data.
+        outcome: the summary row.
+        origin: code, versions and machine, as a log's attributes have them.
+        wall_time: of the simulation [s].
+        trajectory: SHA-256 of what was simulated, to be compared if it is simulated again.
+        log: of the `run.h5` in its folder; None if it was not kept.
+    """
+
+    run_id: str
+    config: Mapping[str, Any]
+    outcome: Mapping[str, Any]
+    origin: Mapping[str, Any]
+    wall_time: float
+    trajectory: str
+    log: Stamp | None
+
+
+@dataclass(frozen=True)
+class Index:
+    """What a file says.
+
+    Attributes:
+        rows: by run id; of two lines the later one counts.
+        named: what rows have in common.
+        damaged: how many lines could not be used.
+    """
+
+    rows: dict[str, Row] = field(default_factory=dict)
+    named: dict[str, Any] = field(default_factory=dict)
+    damaged: int = 0
+
+
+def stamp(path: str | Path) -> Stamp | None:
+    """Of a file as it lies there now; None if there is none, or its folder is a link."""
+    try:
+        if os.path.islink(os.path.dirname(path)):
+            return None
+        found = os.stat(path, follow_symlinks=False)
+    except (OSError, ValueError):
+        return None
+    return Stamp(found.st_size, found.st_mtime_ns)
+
+
+def fits(row: Row) -> bool:
+    """Whether it can be written, and would be read again: a stranger's log may be odd."""
+    return type(row.config.get("seed")) is int and row.outcome.get("run_id") == row.run_id
+
+
+def read(folder: Path) -> Index:
+    """What the index of a folder says, which may be a stranger's; empty if there is none.
+
+    Raises:
+        InputError: there is something else in its place, or it is too large.
+    """
+    path = folder / INDEX_NAME
+    if not os.path.lexists(path):
+        return Index()
+    rows: dict[str, Row] = {}
+    named: dict[str, Any] = {}
+    damaged = 0
+    try:
+        with files.opened(path, linked=False) as file:
+            if os.fstat(file.fileno()).st_size > LARGEST:
+                raise InputError(f"{path}: larger than {LARGEST / 1e6:g} MB")
+            while line := file.readline(LONGEST):
+                try:
+                    _take(line, rows, named)
+                except (ValueError, LogError, LookupError, TypeError, AttributeError):
+                    damaged += 1
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror or error}") from None
+    return Index(rows, named, damaged)
+
+
+def row_at(path: Path) -> Row | None:
+    """The row of a run whose log is not kept, by where it would lie: its folder, or the log in it.
+
+    None where a log lies, or no index knows of one.
+
+    Raises:
+        InputError: see `read`.
+    """
+    place = path.parent if path.name == LOG_NAME else path
+    if os.path.lexists(place / LOG_NAME):
+        return None
+    return read(place.parent).rows.get(place.name)
+
+
+def _take(line: bytes, rows: dict[str, Row], named: dict[str, Any]) -> None:
+    """Read one line; what it raises says that rotctl has not written it."""
+    body = line[len(_BEFORE) + 8 : -1]
+    sound = line.startswith(_BEFORE) and line.endswith(b"\n")
+    if not sound or line[len(_BEFORE) :][:8] != b"%08x" % zlib.crc32(body):
+        raise ValueError("cut off or damaged")
+    data = from_json_line(line.decode("ascii"))
+    if "is" in data:
+        named[_text(data["name"])] = _value(data["is"], named)
+        return
+    log = data.get("log")
+    outcome = dict(zip(named[data["columns"]], data["outcome"], strict=True))
+    plain_outcome(outcome)
+    require_verdict(outcome)
+    row = Row(
+        _matching(_ID, data.get("run_id")),
+        {**named[data["config"]], "seed": data["seed"]},
+        outcome,
+        _origin(named, data["origin"]),
+        _number(data["wall_time"]),
+        _matching(_DIGEST, data.get("trajectory")),
+        None if log is None else Stamp(*map(_number, log)),
+    )
+    if not fits(row):
+        raise ValueError("no seed, or the summary of another run")
+    rows[row.run_id] = row
+
+
+def _value(data: Any, named: Mapping[str, Any]) -> Any:
+    """What is named: the columns, whose names all rows share, or keys with values."""
+    if isinstance(data, list):
+        return tuple(map(_text, data))
+    if not isinstance(data, dict):
+        raise ValueError("neither columns nor keys with values")
+    return {
+        key: named[value[REFERENCE]] if isinstance(value, dict) and REFERENCE in value else value
+        for key, value in data.items()
+    }
+
+
+def _origin(named: dict[str, Any], name: Any) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = named[_text(name)]
+    if any(type(found[key]) is not kind for key, kind in ORIGIN.items()):
+        raise ValueError("an origin that is none")
+    return found
+
+
+def _matching(pattern: re.Pattern[str], value: Any) -> str:
+    if not isinstance(value, str) or not pattern.fullmatch(value):
+        raise ValueError("no name that rotctl gives")
+    return value
+
+
+def _number(value: Any) -> Any:
+    if type(value) not in (int, float):
+        raise ValueError("no number")
+    return value
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError("no text")
+    return value
+
+
+class Writer:
+    """Adds rows; the caller holds the folder's lock."""
+
+    def __init__(self, folder: Path, index: Index) -> None:
+        """Open the file, made if need be, behind its last whole line.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        self._path, self._named = folder / INDEX_NAME, set(index.named)
+        flags = os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_NONBLOCK
+        new = not os.path.lexists(self._path)
+        try:
+            self._file = os.open(self._path, flags, 0o666)
+            self._size = _cut(self._file)
+            if new:
+                files.sync(folder)
+        except OSError as error:
+            raise InputError(f"cannot write {self._path}: {error.strerror or error}") from None
+        self._synced = time.monotonic()
+
+    def add(self, row: Row) -> None:
+        """One more row; on return a kill cannot take it away.
+
+        Raises:
+            InputError: it cannot be written.
+        """
+        config = {name: part for name, part in row.config.items() if name != "seed"}
+        common = {
+            "config": _parts(config),
+            "columns": [_named(json.dumps(list(row.outcome)))],
+            "origin": _parts(row.origin),
+        }
+        new = dict(part for parts in common.values() for part in parts)
+        lines = [
+            _line(f'{{"name": "{name}", "is": {text}}}')
+            for name, text in new.items()
+            if name not in self._named
+        ]
+        data = {
+            "run_id": row.run_id,
+            **{key: parts[-1][0] for key, parts in common.items()},
+            "seed": row.config["seed"],
+            "outcome": list(row.outcome.values()),
+            "wall_time": row.wall_time,
+            "trajectory": row.trajectory,
+            "log": row.log,
+        }
+        content = b"".join([*lines, _line(json.dumps(data))])
+        self._size += len(content)
+        if self._size > LARGEST:
+            raise InputError(
+                f"cannot write {self._path}: larger than {LARGEST / 1e6:g} MB; choose another --out"
+            )
+        try:
+            _write(self._file, content)
+            self._named.update(new)
+            if time.monotonic() - self._synced > SYNC_EVERY:
+                os.fsync(self._file)
+                self._synced = time.monotonic()
+        except OSError as error:
+            raise InputError(f"cannot write {self._path}: {error.strerror or error}") from None
+
+    def close(self) -> None:
+        """Put all on the disk."""
+        with suppress(OSError):  # a full disk has been told
+            os.fsync(self._file)
+        os.close(self._file)
+
+
+def _parts(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Names and texts of an object and of what is large in it, itself last."""
+    parts: list[tuple[str, str]] = []
+    shown: dict[str, Any] = {}
+    for key, value in data.items():
+        inner = _inner(value) if isinstance(value, dict) else []
+        parts += inner
+        shown[key] = {REFERENCE: inner[-1][0]} if inner else value
+    return [*parts, _named(json.dumps(shown))]
+
+
+@kept(most=1000)
+def _inner(data: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The same of a part of it, if it is large; most parts are of many runs."""
+    return _parts(data) if len(json.dumps(data)) > SMALL else []
+
+
+@lru_cache(maxsize=1000)
+def _named(text: str) -> tuple[str, str]:
+    return sha256(text.encode()).hexdigest()[:16], text
+
+
+def _line(text: str) -> bytes:
+    """A line of a JSON object and its checksum, which comes first."""
+    body = b'", ' + text.encode("ascii")[1:]
+    return _BEFORE + b"%08x" % zlib.crc32(body) + body + b"\n"
+
+
+def _cut(file: int) -> int:
+    """Drop what stands behind the last end of a line, as a kill left it; the size then."""
+    end = os.fstat(file).st_size
+    while end:
+        begin = max(0, end - 2**16)
+        found = os.pread(file, end - begin, begin).rfind(b"\n")
+        if found >= 0:
+            end = begin + found + 1
+            break
+        end = begin
+    os.ftruncate(file, end)
+    return end
+
+
+def _write(file: int, content: bytes) -> None:
+    while content:
+        content = content[os.write(file, content) :]
