@@ -21,7 +21,12 @@ def summarise(scenario: Scenario, buffer: TrajectoryBuffer, ending: str, wall: f
     config = scenario.config
     period = 1.0 / config.controller.rate
     judgement = judge(
-        buffer.arrays(), config.criteria, config.behaviour.commanded, period, config.duration
+        buffer.arrays(),
+        config.criteria,
+        config.behaviour.commanded,
+        period,
+        config.duration,
+        scenario.model.mj,
     )
     columns = judgement.columns
     reason = ending or judgement.reason

@@ -14,6 +14,21 @@ from rotctl.run import LOG_NAME, run
 from rotctl.run_folder import SUMMARY_NAME
 from rotctl.scenario import build
 
+LOOKS = [
+    "head_share",
+    "head_peak",
+    "hands_bear",
+    "force_p99",
+    "force_peak",
+    "tuck_hip",
+    "tuck_knee",
+    "knees_apart",
+    "limb_overlap",
+    "rate_error",
+    "speed_error",
+    "revolution_error",
+    "travel_mean",
+]
 SUMMARY_KEYS = [
     "run_id",
     "behaviour",
@@ -47,6 +62,7 @@ SUMMARY_KEYS = [
     "recovery",
     "recovered",
     "solver_failures",
+    *LOOKS,
     "angular_velocity_commanded",
     "speed_commanded",
     "real_time_factor",
@@ -368,6 +384,7 @@ def test_a_run_without_a_single_good_state_has_nulls(tmp_path):
         "recovery",
         "recovered",
         "torque_p99_fraction",
+        *LOOKS,
     }
     assert RunLog.open(result.folder / LOG_NAME).steps == 0
     assert run(load(NEVER_STARTS), tmp_path).broke_down, "also when it is only reported"

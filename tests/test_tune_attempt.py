@@ -10,7 +10,7 @@ import pytest
 from rotctl.config import load
 from rotctl.tune.attempt import Attempt, attempt, hopeless
 from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
-from rotctl.tune.space import Objective, Stopping
+from rotctl.tune.space import Objective, Stopping, Wish
 
 OBJECTIVE = Objective("mean", survival=0.6, progress=0.4, pace=0.65, drift=0.03, heading=0.001)
 WANTED = replace(OBJECTIVE, success=0.5)
@@ -38,6 +38,27 @@ def test_the_score_of_a_run(run, worth):
 def test_a_success_by_the_criteria_is_worth_more():
     assert score(PERFECT, WANTED) == pytest.approx(1.5)
     assert score(replace(PERFECT, success=False), WANTED) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("value", "cost"),
+    [
+        *((0.9, 0.0), (1.0, 0.0), (0.85, 0.1), (0.5, 0.8), (0.4, 1.0), (-9.0, 1.0), (1.1, 0.2)),
+        (nan, 1.0),
+    ],
+)
+def test_a_column_outside_of_what_is_wished_costs(value, cost):
+    wished = replace(WANTED, columns={"hands_bear": Wish(weight=0.3, miss=0.5, low=0.9, high=1.0)})
+    run = replace(PERFECT, columns={"hands_bear": value})
+    assert score(run, wished) == pytest.approx(1.5 - 0.3 * cost)
+    assert score(PERFECT, wished) == pytest.approx(1.2), "a column that is not there"
+
+
+def test_a_run_has_the_columns_that_are_asked_for():
+    item = Attempt(load(["seed=1000000", "duration=3"]), STOPPING, ("head_share", "rate_error"))
+    found = attempt(item).columns
+    assert list(found) == ["head_share", "rate_error"]
+    assert 0.01 < found["head_share"] < 0.5
 
 
 @pytest.mark.parametrize(

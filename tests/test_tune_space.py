@@ -9,7 +9,7 @@ import yaml
 from rotctl.config import load, to_dict
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
-from rotctl.tune.space import TRAINING_SEEDS, load_space, names
+from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (
     configs,
     final_seeds,
@@ -88,6 +88,16 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
             ["parameters", 0, "key"],
             "controller.tasks.{a",
             "parameters[0]: key must be dotted names, as in controller.tasks.linear.damping[0]",
+        ),
+        (
+            ["objective", "columns"],
+            {"head_share": {"weight": 1.0, "miss": 0.1}},
+            "objective.columns.head_share: give low, high or both",
+        ),
+        (
+            ["objective", "columns"],
+            {"head": {"weight": 1.0, "miss": 0.1, "high": 0.1}},
+            f"objective.columns: a roll has no column 'head'; it has: {', '.join(ROLLING)}",
         ),
         (["runs"], None, "runs=null: must be keys with values"),
         (

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any
 
+import mujoco
 import numpy as np
 from pydantic import Field
 
-from rotctl.metrics import dive, flip, orientation, rolling, standing
+from rotctl.metrics import appearance, dive, flip, orientation, pace, rolling, standing
 from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.flip import FlipCriteria
@@ -20,7 +21,7 @@ Criteria = Annotated[
     DiveCriteria | FlipCriteria | OrientationCriteria | RollingCriteria | StandingCriteria,
     Field(discriminator="kind"),
 ]
-_KINDS = (rolling, standing, orientation, flip, dive)
+_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive)
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
@@ -38,7 +39,12 @@ class Judgement:
 
 
 def judge(
-    log: Arrays, criteria: Criteria, commanded: Mapping[str, float], period: float, wanted: float
+    log: Arrays,
+    criteria: Criteria,
+    commanded: Mapping[str, float],
+    period: float,
+    wanted: float,
+    mj: mujoco.MjModel | None = None,
 ) -> Judgement:
     """Judge a run.
 
@@ -47,6 +53,7 @@ def judge(
         commanded: columns that tell what was asked for.
         period: of the control [s].
         wanted: how long the run was to be [s].
+        mj: what was simulated; without it nobody sees what a roll looks like.
     """
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
@@ -55,6 +62,10 @@ def judge(
         rolled = rolling.measure(log, criteria, commanded["angular_velocity_commanded"], period)
         found, reason = asdict(rolled), rolling.failure_reason(rolled, criteria, wanted)
         del found["stalled_at"]  # of people's interest in a reason alone
+        direction = commanded["angular_velocity_commanded"]
+        found |= asdict(appearance.measure(log, mj, direction, period))
+        means = rolled.angular_velocity_mean, rolled.speed_mean
+        found |= pace.measure(log, means, commanded, criteria.settle)
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
         found, reason = asdict(stood), standing.failure(stood, criteria, steps * period)

@@ -10,11 +10,16 @@ import pandas as pd
 
 from rotctl import files
 from rotctl.errors import InputError
+from rotctl.metrics import appearance, pace, rolling
 from rotctl.metrics.rates import wilson
-from rotctl.metrics.rolling import IN_FILES_ONLY
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
 
+# Too many for a table that people read.
+IN_FILES_ONLY = {
+    *rolling.IN_FILES_ONLY,
+    *(column.name for kind in (appearance, pace) for column in kind.COLUMNS),
+}
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
 
 

@@ -7,7 +7,8 @@ from math import acos, degrees, pi
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
 from rotctl.errors import InputError
-from rotctl.metrics.rolling import RollingCriteria, failure_reason, measure
+from rotctl.metrics.judge import judge
+from rotctl.metrics.rolling import RollingCriteria
 from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -20,10 +21,15 @@ Stop = Callable[[Moment], bool]
 
 @dataclass(frozen=True)
 class Attempt:
-    """A run to be tried."""
+    """A run to be tried.
+
+    Attributes:
+        columns: of its summary row that the objective looks at.
+    """
 
     config: Config
     stopping: Stopping
+    columns: tuple[str, ...] = ()
 
 
 def attempt(item: Attempt) -> TrialRun:
@@ -40,15 +46,17 @@ def attempt(item: Attempt) -> TrialRun:
     scenario = build(config)
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
-    metrics = measure(buffer.arrays(), criteria, commanded, period)
-    failed = failure_reason(metrics, criteria, config.duration)
+    asked, log = behaviour.commanded, buffer.arrays()
+    judged = judge(log, criteria, asked, period, config.duration, scenario.model.mj)
+    found = judged.columns
     return TrialRun(
-        survived=metrics.duration,
+        survived=found["duration"],
         wanted=config.duration,
-        revolutions=metrics.revolutions,
-        drift=metrics.lateral_drift,
-        heading=metrics.heading_error_end,
-        success=not failed and metrics.duration >= config.duration - 1e-6,
+        revolutions=found["revolutions"],
+        drift=found["lateral_drift"],
+        heading=found["heading_error_end"],
+        success=not judged.reason,
+        columns={name: float(found[name]) for name in item.columns},
     )
 
 

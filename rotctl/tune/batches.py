@@ -43,7 +43,8 @@ class Evaluator:
         """
         batches = [configs(self.data, values, seeds) for values in candidates]
         places = [(b, i) for b, batch in enumerate(batches) for i in range(len(batch))]
-        items = [Attempt(batches[b][i], self.space.stopping) for b, i in places]
+        stopping, columns = self.space.stopping, tuple(self.space.objective.columns)
+        items = [Attempt(batches[b][i], stopping, columns) for b, i in places]
         results: list[dict[int, TrialRun | Failure]] = [{} for _ in batches]
         following = 0
         for place, result in self.engine.map(attempt, items, RETRIES):

@@ -1,8 +1,8 @@
 """What a run is worth, and a candidate over its runs."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from rotctl.tune.space import Objective
 
@@ -18,6 +18,7 @@ class TrialRun:
         drift: largest distance from the line of travel [m].
         heading: of the trunk's axis at the end, against the rolling axis [deg].
         success: by the criteria of its config.
+        columns: of its summary row, those that the objective looks at.
     """
 
     survived: float
@@ -26,6 +27,7 @@ class TrialRun:
     drift: float
     heading: float
     success: bool
+    columns: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def to_the_end(self) -> bool:
@@ -39,7 +41,8 @@ LOST = TrialRun(0.0, 1.0, 0.0, 0.0, 0.0, False)  # a run whose worker died every
 def score(run: TrialRun, objective: Objective) -> float:
     """What a run is worth; a perfect one the sum of `survival`, `progress` and `success`.
 
-    A number that a broken-down run does not have counts for nothing.
+    A number that a broken-down run does not have counts for nothing, and a column of `columns` that
+    it does not have as missed by all of its weight.
     """
     paced = run.revolutions / (objective.pace * run.wanted)
     value = (
@@ -49,7 +52,11 @@ def score(run: TrialRun, objective: Objective) -> float:
         - objective.drift * abs(run.drift)
         - objective.heading * abs(run.heading)
     )
-    return value if math.isfinite(value) else 0.0
+    cost = math.fsum(
+        wish.weight * wish.missed(run.columns.get(name, math.nan))
+        for name, wish in objective.columns.items()
+    )
+    return (value if math.isfinite(value) else 0.0) - cost
 
 
 def overall(runs: Sequence[TrialRun], objective: Objective) -> float:

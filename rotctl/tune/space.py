@@ -1,6 +1,8 @@
 """What a search may change, on which runs, and how it is scored: `conf/tune/NAME.yaml`."""
 
 import re
+from dataclasses import field
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,9 +13,11 @@ from rotctl import documents
 from rotctl.checked import checked
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
+from rotctl.metrics import appearance, pace, rolling
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.key_braces import MOST, expanded
 
+ROLLING = tuple(c.name for kind in (rolling, appearance, pace) for c in kind.COLUMNS)
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
 # An index of three digits is plenty: a list is made as long as that.
 _KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d{1,3}\])?")
@@ -84,6 +88,41 @@ class Parameter:
 
 
 @validated(frozen=True, config=STRICT)
+class Wish:
+    """What a column of the summary should be.
+
+    Attributes:
+        weight: taken off where it is missed by `miss` or more [-].
+        low, high: between which all is well, in the column's unit; one of them may be absent.
+        miss: so far outside takes off all of the weight, less in proportion [unit of the column].
+    """
+
+    weight: NonNegative
+    miss: Positive
+    low: Finite | None = None
+    high: Finite | None = None
+
+    def __post_init__(self) -> None:
+        if self.low is None and self.high is None:
+            raise ValueError("give low, high or both")
+
+    def missed(self, value: float) -> float:
+        """By how much of `miss` a value is outside, at most 1; all of it if it is no number."""
+        if not isfinite(value):
+            return 1.0
+        below = 0.0 if self.low is None else self.low - value
+        above = 0.0 if self.high is None else value - self.high
+        return min(max(below, above, 0.0) / self.miss, 1.0)
+
+
+def _measured(columns: dict[str, Wish]) -> dict[str, Wish]:
+    for name in columns:
+        if name not in ROLLING:
+            raise ValueError(f"a roll has no column {name!r}; it has: {', '.join(ROLLING)}")
+    return columns
+
+
+@validated(frozen=True, config=STRICT)
 class Objective:
     """Weights of a run's score, and how the scores of runs make that of a candidate.
 
@@ -95,6 +134,7 @@ class Objective:
         drift: taken off for each metre of lateral drift [1/m].
         heading: taken off for each degree of heading error at the end [1/deg].
         success: on what the config's criteria call a success [-].
+        columns: of the summary row, by name, and what they should be.
     """
 
     over_runs: Literal["mean", "worst"]
@@ -104,6 +144,7 @@ class Objective:
     drift: NonNegative
     heading: NonNegative
     success: NonNegative = 0.0
+    columns: Annotated[dict[str, Wish], AfterValidator(_measured)] = field(default_factory=dict)
 
 
 @validated(frozen=True, config=STRICT)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from rotctl.metrics import appearance
 from rotctl.metrics.claims import SUCCESS_RATE, Judged, Measured, judge, measured, overall, picked
 from rotctl.report.site.words import kind, values
 from rotctl.report.title import plain
@@ -23,6 +24,7 @@ SHOWN = (
     "speed_commanded",
     "longest_stall",
 )
+LOOKS = tuple(column.name for column in appearance.COLUMNS)
 
 
 @dataclass(frozen=True)
@@ -35,6 +37,7 @@ class Row:
         source: of the behaviour.
         verdict: of all its claims together; empty if it has none.
         metrics: `success_rate` and those of `SHOWN` -> what was measured.
+        looks: those of `LOOKS` that were measured.
         worst: of the run with the longest stall [s].
         missing: runs without a result.
         failures: kind of failure -> how many, most first.
@@ -49,6 +52,7 @@ class Row:
     claims: tuple[Judged, ...]
     verdict: str
     metrics: Mapping[str, Measured]
+    looks: Mapping[str, Measured]
     worst: float | None
     missing: int
     failures: tuple[tuple[str, int], ...]
@@ -86,6 +90,7 @@ def _row(
     poorest = sweep.runs[order[0]] if order else None
     stalls = [v for v in done.get("longest_stall", []) if isinstance(v, float) and math.isfinite(v)]
     config = median.config if median else {}
+    looks = {name: measured(done, name) for name in LOOKS}
     return Row(
         name=values(where),
         about=_text(config, "behaviour.description"),
@@ -93,6 +98,7 @@ def _row(
         claims=tuple(claims),
         verdict=overall([claim.verdict for claim in claims]) if claims else "",
         metrics={name: measured(done, name) for name in (SUCCESS_RATE, *SHOWN)},
+        looks={name: found for name, found in looks.items() if found.runs},
         worst=max(stalls, default=None),
         missing=len(about) - len(done),
         failures=tuple(sorted(reasons.items(), key=lambda item: (-item[1], item[0]))),

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from rotctl.metrics import appearance, pace
 from rotctl.metrics.claims import SUCCESS_RATE, Claim, Measured
 from rotctl.report.title import plain
 
@@ -18,6 +19,7 @@ QUANTITIES = {
     "duration": ("Simulated time", "s"),
     "torque_p99_fraction": ("Torque, 99th percentile of its limit", ""),
     "real_time_factor": ("Real-time factor", ""),
+    **{c.name: (c.title, c.unit) for kind in (appearance, pace) for c in kind.COLUMNS},
 }
 NOTHING = "\u2013"
 

@@ -1,0 +1,58 @@
+"""How near a roll comes to what is commanded, on logs made by hand."""
+
+import numpy as np
+import pytest
+
+from rotctl.metrics.pace import measure, off
+
+PERIOD = 1.0 / 60.0
+ASKED = {"angular_velocity_commanded": 0.5, "speed_commanded": 1.0}
+
+
+def log_of(progress):
+    turned = 2 * np.pi * np.asarray(progress)
+    none = np.zeros(len(turned))
+    return {
+        "trajectory/time": PERIOD * np.arange(len(turned)),
+        "trajectory/angular_excursion": np.stack((none, turned, none), axis=1),
+    }
+
+
+def test_means_against_commands():
+    steady = log_of(0.6 * PERIOD * np.arange(600))
+    found = measure(steady, (0.6, 0.9), ASKED, settle=2.0)
+    assert found == pytest.approx(
+        {"rate_error": 0.2, "speed_error": 0.1, "revolution_error": 0.2, "travel_mean": 1.5},
+        abs=0.01,
+    )
+
+
+def test_a_mean_that_is_met_by_quick_and_slow_revolutions():
+    time = PERIOD * np.arange(1201)
+    progress = np.interp(time, [0, 4, 5, 9, 10, 14, 15, 20], [0, 1, 2, 3, 4, 5, 6, 7])
+    found = measure(log_of(progress), (0.5, 1.0), ASKED, settle=0.0)
+    assert found["rate_error"] == 0.0
+    assert found["revolution_error"] > 0.15
+
+
+def test_what_happens_before_it_settles_does_not_count():
+    progress = np.interp(PERIOD * np.arange(601), [0, 5, 10], [0, 10, 12.5])
+    assert measure(log_of(progress), (0.5, 1.0), ASKED, 5.0)["revolution_error"] < 0.02
+    assert measure(log_of(progress), (0.5, 1.0), ASKED, 0.0)["revolution_error"] > 0.02
+
+
+def test_backward_is_no_error_where_it_is_commanded():
+    asked = {"angular_velocity_commanded": -0.5, "speed_commanded": -1.0}
+    found = measure(log_of(-0.5 * PERIOD * np.arange(600)), (-0.5, -1.0), asked, 2.0)
+    assert found["rate_error"] == found["speed_error"] == 0.0
+    assert found["revolution_error"] < 0.01
+    assert found["travel_mean"] == 2.0
+    assert off(0.5, -0.5) == 2.0
+
+
+@pytest.mark.parametrize("rows", [0, 1, 60])
+def test_what_is_not_there_is_no_number(rows):
+    found = measure(log_of(0.5 * PERIOD * np.arange(rows)), (np.nan, np.nan), ASKED, 2.0)
+    assert np.isnan(list(found.values())).all()
+    none = {"angular_velocity_commanded": 0.0, "speed_commanded": 0.0}
+    assert np.isnan(measure(log_of(np.arange(600)), (0.0, 0.0), none, 2.0)["rate_error"])
