@@ -119,16 +119,42 @@ def _some(names: tuple[str, ...], most: int = 3) -> str:
     return ", ".join(names[:most]) + more
 
 
+_KINDS = {
+    "left": "forward roll",
+    "right": "backward roll",
+    "head": "log roll",
+    "face": "cartwheel",
+}
+_POOR = 10.0  # [deg] median error of a segment that is told
+_DOUBTFUL = 0.8  # of the second axis's share of the first's
+_FALLS = 0.5  # [m/s2] what falls slower does not fall
+
+
 def imported(made: "Imported") -> str:
     """How well a captured roll became a clip."""
     import numpy as np
 
     clip, degrees = made.clip, np.degrees(made.error)
-    kind = {"left": "forward roll", "right": "backward roll", "head": "log roll"}[clip.roll_about]
     gap = np.abs(made.closed.gap)
-    lines = [f"{kind}, {made.start:.3f} to {made.end:.3f} s of the file"]
+    lines = [f"{_KINDS[clip.roll_about]}, {made.start:.3f} to {made.end:.3f} s of the file"]
     if made.mirrored:
-        lines.append("  left and right are exchanged, so that the head is to the left of the way")
+        side = "head" if clip.roll_about == "head" else "face"
+        lines.append(
+            f"  left and right are exchanged, so that the {side} is to the left of the way"
+        )
+    if made.up:
+        lines.append(f"  up           the file's {made.up}; if not, see --up")
+    if made.false_start:
+        lines.append("  left out     the first frame, which is no neighbour of the second")
+    parts = ("hip", "knee", "ankle", "ball", "shoulder", "elbow", "wrist")
+    lines += [
+        f"  {name:12} {', '.join(made.roles.get(role, '-') for role in roles)}"
+        for name, roles in (
+            ("trunk", ("hips", "neck", "head")),
+            ("left", [f"left_{part}" for part in parts]),
+            ("right", [f"right_{part}" for part in parts]),
+        )
+    ]
     lines.append("  segment         error [deg] median   95 %")
     for name, middle, high in zip(
         made.segments, np.median(degrees, axis=0), np.percentile(degrees, 95, axis=0), strict=True
@@ -149,12 +175,38 @@ def imported(made: "Imported") -> str:
     return "\n".join(lines)
 
 
-def clock_warnings(flights: "list[Flight]") -> list[str]:
-    """What flights say against the clock of a capture."""
-    return [
-        f"the flight from {flight.start:.2f} to {flight.end:.2f} s falls at {flight.fall:.1f} "
-        f"m/s2, not 9.81: the file's clock runs {flight.haste:.2f} times as fast as the motion "
-        "did; see --rate"
-        for flight in flights
-        if not flight.plausible
+def import_warnings(made: "Imported") -> list[str]:
+    """What speaks against a clip: segments that do not follow, a kind in doubt, a clock."""
+    import numpy as np
+
+    degrees = np.degrees(np.median(made.error, axis=0))
+    poor = [
+        f"{name} {angle:.0f}"
+        for name, angle in zip(made.segments, degrees, strict=True)
+        if angle > _POOR
     ]
+    found = []
+    if poor:
+        found.append(
+            f"these do not follow the actor (median error [deg]): {', '.join(poor)}; look at the "
+            "joints found and at --filmstrip"
+        )
+    if made.doubt > _DOUBTFUL:
+        found.append(
+            f"nearly as much about another axis of the trunk ({made.doubt:.2f} to 1): "
+            f"{_KINDS[made.clip.roll_about]} is hardly the word"
+        )
+    return found + [_clock(flight) for flight in made.flights if not flight.plausible]
+
+
+def _clock(flight: "Flight") -> str:
+    """What a flight says against the clock of a capture."""
+    said = (
+        f"the flight from {flight.start:.2f} to {flight.end:.2f} s falls at {flight.fall:.1f} m/s2"
+    )
+    if flight.fall < _FALLS:
+        return f"{said}, not 9.81: is it a flight, is up up, do the hips move? See --up"
+    return (
+        f"{said}, not 9.81: the file's clock runs {flight.haste:.2f} times as fast as the motion "
+        "did; see --rate"
+    )

@@ -10,8 +10,8 @@ from rotctl.motion.asf_amc import read_amc
 from rotctl.motion.bvh import read_bvh
 from rotctl.motion.capture import MAX_POSES
 from rotctl.motion.deepmimic import read_deepmimic
-from rotctl.motion.importing import FORMATS, read_capture
 from rotctl.motion.landmarks import find_landmarks
+from rotctl.motion.reading import FORMATS, Wishes, read_capture
 
 # ---------------------------------------------------------------- BVH
 
@@ -257,6 +257,9 @@ def damaged(column, value):
     return [STANDING, [*STANDING[:column], value, *STANDING[column + 1 :]], STANDING]
 
 
+SHORT = ": frame 2: {} values, 44 expected; only humanoid3d is read"
+
+
 @pytest.mark.parametrize(
     ("content", "complaint"),
     [
@@ -267,8 +270,8 @@ def damaged(column, value):
         ("[]", ": Frames must be a list of 2 to 30000 frames"),
         ('{"Frames": 3}', ": Frames must be a list of 2 to 30000 frames"),
         (json.dumps({"Frames": [STANDING]}), ": Frames must be a list of 2 to 30000 frames"),
-        (json.dumps({"Frames": [STANDING, STANDING[:-1]]}), ": frame 2: 43 values, 44 expected"),
-        (json.dumps({"Frames": [STANDING, 3]}), ": frame 2: 0 values, 44 expected"),
+        (json.dumps({"Frames": [STANDING, STANDING[:-1]]}), SHORT.format(43)),
+        (json.dumps({"Frames": [STANDING, 3]}), SHORT.format(0)),
         (json.dumps({"Frames": damaged(5, "1")}), ": frame 2: '1' is no number"),
         (json.dumps({"Frames": damaged(5, float("nan"))}), ": is no JSON: NaN is no number"),
         (json.dumps({"Frames": damaged(5, True)}), ": frame 2: True is no number"),
@@ -288,9 +291,9 @@ def test_malformed_deepmimic(tmp_path, content, complaint):
 
 def test_by_its_ending(tmp_path):
     amc, _ = acclaim(tmp_path)
-    assert "thigh" in read_capture(amc, None, None).joints  # the .asf of its name
+    assert "thigh" in read_capture(amc).joints  # the .asf of its name
     bvh = written(tmp_path / "A.BVH", BVH)
-    assert read_capture(bvh, None, 100.0).time.tolist() == [0.0, 0.01]
+    assert read_capture(bvh, Wishes(rate=100.0)).time.tolist() == [0.0, 0.01]
     fbx = tmp_path / "a.fbx"
     for path, rate, complaint in (
         (fbx, None, f"{fbx}: unknown kind of file, valid: {FORMATS}"),
@@ -300,7 +303,7 @@ def test_by_its_ending(tmp_path):
         (tmp_path / "no.bvh", None, f"{tmp_path / 'no.bvh'}: no such file"),
     ):
         with pytest.raises(InputError) as error:
-            read_capture(path, None, rate)
+            read_capture(path, Wishes(rate=rate))
         assert str(error.value) == complaint
 
 
@@ -316,5 +319,6 @@ def test_what_is_no_human(tmp_path):
     with pytest.raises(InputError) as error:
         find_landmarks(path, read_bvh(path))
     assert str(error.value) == (
-        f"{path}: no joint for the left hip, such as leftupleg; its joints: hips, knee, ankle"
+        f"{path}: no joint for the left hip, such as leftupleg; name it with --map left_hip=NAME; "
+        "its joints: hips, knee, ankle"
     )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rotctl.commands.arguments import Commands, folder_name
 from rotctl.commands.bars import bar, following
 from rotctl.errors import InputError
-from rotctl.wording import clock_warnings, imported, printable
+from rotctl.wording import import_warnings, imported, printable
 
 if TYPE_CHECKING:
     from rotctl.mechanics.model import Model
@@ -22,11 +22,14 @@ def add_import(commands: Commands) -> None:
     command = commands.add_parser(
         "import-motion",
         help="make a reference clip of captured motion",
-        description="Read a captured roll (BVH, ASF/AMC or DeepMimic), put it on one of our "
-        "characters, cut out one cycle and write it as a clip over the phase of the roll. Says "
-        "how well each segment follows, how fast the body turns and how well the loop closes.",
+        description="Read a captured roll (BVH, ASF/AMC, DeepMimic, SMPL, a robot's joints), put "
+        "it on one of our characters, cut out one cycle and write it as a clip over the phase of "
+        "the roll. Says which joints it took, how well each segment follows, how fast the body "
+        "turns and how well the loop closes.",
     )
-    command.add_argument("file", type=Path, metavar="FILE", help=".bvh, .amc, .txt or .json")
+    command.add_argument(
+        "file", type=Path, metavar="FILE", help=".bvh, .amc, .txt, .json, .npz or .csv"
+    )
     command.add_argument(
         "--cycle",
         type=_seconds,
@@ -38,6 +41,20 @@ def add_import(commands: Commands) -> None:
     )
     command.add_argument("--rate", type=float, metavar="HZ", help="frame rate [the file's]")
     command.add_argument(
+        "--up", choices=("x", "y", "z"), help="axis of a .bvh that is up [guessed, and told]"
+    )
+    command.add_argument(
+        "--map",
+        type=_role,
+        action="append",
+        default=[],
+        metavar="ROLE=NAME",
+        help="which joint is what, as left_hip=Bone_7, where its name does not say",
+    )
+    command.add_argument(
+        "--model", type=Path, metavar="ROBOT.xml", help="whose joints a .csv or .npz has (MJCF)"
+    )
+    command.add_argument(
         "--symmetric", action="store_true", help="the mean of the roll and its mirror image"
     )
     command.add_argument("--licence", default="", metavar="TEXT", help="the source's terms")
@@ -48,10 +65,14 @@ def add_import(commands: Commands) -> None:
 
 def import_motion(arguments: argparse.Namespace) -> int:
     """Make a clip of captured motion."""
-    from rotctl.motion.importing import import_motion, read_capture
+    from rotctl.motion.importing import import_motion
+    from rotctl.motion.reading import Wishes, read_capture
 
+    wishes = Wishes(
+        arguments.skeleton, arguments.rate, arguments.up, dict(arguments.map), arguments.model
+    )
     model = _model(arguments.character)
-    capture = read_capture(arguments.file, arguments.skeleton, arguments.rate)
+    capture = read_capture(arguments.file, wishes)
     with bar("retarget", "frame") as shown:
         made = import_motion(
             model,
@@ -62,10 +83,11 @@ def import_motion(arguments: argparse.Namespace) -> int:
             arguments.symmetric,
             arguments.licence,
             following(shown),
+            wishes,
         )
     out = _clip_written(arguments, made.clip)
     print(printable(imported(made)))
-    for warning in clock_warnings(made.flights):
+    for warning in import_warnings(made):
         print(f"rotctl: warning: {warning}", file=sys.stderr)
     return _clip_shown(arguments, model, made.clip, out)
 
@@ -171,6 +193,15 @@ def _add_character(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--character", default="adult", metavar="NAME", help="whose joints [%(default)s]"
     )
+
+
+def _role(text: str) -> tuple[str, str]:
+    from rotctl.motion.naming import ROLES
+
+    role, equals, joint = text.partition("=")
+    if role not in ROLES or not equals:
+        raise argparse.ArgumentTypeError(f"{text!r}: valid: ROLE=NAME, of {', '.join(ROLES)}")
+    return role, joint
 
 
 def _seconds(text: str) -> tuple[float, float]:

@@ -66,9 +66,24 @@ def read_amc(path: Path, skeleton: Path, rate: float = RATE) -> Capture:
         {ROOT: "", **parents},
         {name: starts.get(name, origin) for name in parents},
         local,
-        root[:, :3],
+        {ROOT: root[:, :3]},
         Y_UP_FACING_Z,
     )
+
+
+def skeleton_of(path: Path) -> Path:
+    """The .asf of an .amc: of its own name, or as CMU ships them, 01.asf for all 01_*.amc.
+
+    Raises:
+        InputError: there is neither.
+    """
+    own = path.with_suffix(".asf")
+    subject = path.with_name(f"{path.stem.partition('_')[0]}.asf")
+    found = next((each for each in (own, subject) if each.is_file()), None)
+    if found is None:
+        other = f" or {subject.name}" if subject != own else ""
+        raise InputError(f"{path}: no {own.name}{other} beside it; give --skeleton FILE.asf")
+    return found
 
 
 def _skeleton(path: Path) -> tuple[dict[str, _Bone], dict[str, str]]:

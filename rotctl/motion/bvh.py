@@ -1,12 +1,15 @@
 """Biovision files (.bvh): a skeleton of offsets, then one line of channels a frame.
 
 Angles are in degrees; a joint's rotation is the product in the order of its channels, which
-differs from file to file. The length unit is nowhere written. y is up and the rest pose
-faces +z. A root with position channels is where they say: its offset does not count.
+differs from file to file. Neither the unit of length nor which axis is up is written: y is, in
+most files. A joint with position channels is where they say, its offset does not count; of
+the joints below the hips they are left out, as they would stretch bones.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +24,16 @@ from rotctl.motion.capture import (
     assembled,
     bounded,
 )
+from rotctl.motion.naming import find_roles
 from rotctl.motion.untrusted import numbers, text_of
 from rotctl.rotations import Array
 
 _CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
+
+# A name goes to its brace or the end of the line, and may have blanks: Bip01 L Thigh.
+_WORDS = re.compile(r"(?:(?<=ROOT)|(?<=JOINT)|(?<=End))\s+[^{}]*[^{}\s]|[{}]|[^\s{}]+")
+_COUNT = re.compile(r"Frames\s*:\s*(.*)")
+_PERIOD = re.compile(r"Frame\s+Time\s*:\s*(.*)")
 
 Words = Iterator[tuple[int, str]]  # (line, word)
 
@@ -37,8 +46,11 @@ class _Joint:
     channels: list[str] = field(default_factory=list)
 
 
-def read_bvh(path: Path) -> Capture:
-    """Read a BVH file.
+def read_bvh(path: Path, given: Mapping[str, str] | None = None) -> Capture:
+    """Read a BVH file; its y is taken for up.
+
+    Args:
+        given: roles of joints that the user has named, see `find_roles`.
 
     Raises:
         InputError: one line that names the file and the line in it.
@@ -48,29 +60,42 @@ def read_bvh(path: Path) -> Capture:
     joints = _skeleton(path, lines[:start])
     time, values = _frames(path, lines, start, sum(len(joint.channels) for joint in joints))
     bounded(path, len(joints), len(time))
-    root, local, column = np.zeros((len(time), 3)), {}, 0
+    parents = {joint.name: joint.parent for joint in joints}
+    free = _down_to_the_hips(path, parents, given)
+    moves, local, column = {}, {}, 0
     for joint in joints:
-        rotation = Rotation.identity(len(time))
+        rotation, place = Rotation.identity(len(time)), np.zeros((len(time), 3))
         for channel in joint.channels:
             if channel.endswith("rotation"):
                 turn = Rotation.from_euler(channel[0].lower(), values[:, [column]], degrees=True)
                 rotation = rotation * turn
-            elif not joint.parent:  # elsewhere it would stretch a bone
-                root[:, "XYZ".index(channel[0])] = values[:, column]
+            else:
+                place[:, "XYZ".index(channel[0])] = values[:, column]
+                if joint.name in free:
+                    moves[joint.name] = place
             column += 1
         local[joint.name] = rotation
-    return assembled(
-        time,
-        {joint.name: joint.parent for joint in joints},
-        {joint.name: np.array(joint.offset) for joint in joints},
-        local,
-        root,
-        Y_UP_FACING_Z,
-    )
+    moves.setdefault(joints[0].name, np.zeros((len(time), 3)))
+    offsets = {joint.name: np.array(joint.offset) for joint in joints}
+    capture = assembled(time, parents, offsets, local, moves, Y_UP_FACING_Z)
+    return replace(capture, upright=False)
+
+
+def _down_to_the_hips(
+    path: Path, parents: Mapping[str, str], given: Mapping[str, str] | None
+) -> set[str]:
+    """The joints that may move against their parents."""
+    free, joint = {next(iter(parents))}, ""
+    with suppress(InputError):  # where landmarks are looked for, it is told
+        joint = find_roles(path, parents, given)["hips"]
+    while joint:
+        free.add(joint)
+        joint = parents[joint]
+    return free
 
 
 def _skeleton(path: Path, lines: list[str]) -> list[_Joint]:
-    words = ((i, word) for i, line in enumerate(lines, 1) for word in line.split())
+    words = ((i, word.strip()) for i, line in enumerate(lines, 1) for word in _WORDS.findall(line))
     joints: dict[str, _Joint] = {}
     open_joints: list[_Joint] = []  # an end site has no name, and is not among the joints
     waiting: _Joint | None = None  # for its brace
@@ -134,17 +159,19 @@ def _frames(path: Path, lines: list[str], start: int, channels: int) -> tuple[Ar
     """Times (n,) [s] and channel values (n, channels)."""
     if start == len(lines):
         raise InputError(f"{path}:{len(lines)}: no MOTION")
-    head = [line.split() for line in lines[start + 1 : start + 3]]
-    if len(head) < 2 or head[0][:1] != ["Frames:"] or head[1][:2] != ["Frame", "Time:"]:
-        raise InputError(f"{path}:{start + 2}: MOTION must go on with Frames: and Frame Time:")
-    (declared,) = numbers(f"{path}:{start + 2}", head[0][1:], 1)
-    (period,) = numbers(f"{path}:{start + 3}", head[1][2:], 1)
+    said = [(i, line.strip()) for i, line in enumerate(lines[start:], start + 1) if line.strip()]
+    (count_at, count), (period_at, length) = (*said[1:3], (start + 2, ""), (start + 2, ""))[:2]
+    has_count, has_length = _COUNT.match(count), _PERIOD.match(length)
+    if not (has_count and has_length):
+        raise InputError(f"{path}:{count_at}: MOTION must go on with Frames: and Frame Time:")
+    (declared,) = numbers(f"{path}:{count_at}", has_count[1].split(), 1)
+    (period,) = numbers(f"{path}:{period_at}", has_length[1].split(), 1)
     if not 1e-4 <= period <= 1.0:
-        raise InputError(f"{path}:{start + 3}: Frame Time: {period:g}, valid: 0.0001 to 1 s")
-    rows = [(i, line) for i, line in enumerate(lines[start + 3 :], start + 4) if line.strip()]
+        raise InputError(f"{path}:{period_at}: Frame Time: {period:g}, valid: 0.0001 to 1 s")
+    rows = said[3:]
     if len(rows) != declared or not 2 <= len(rows) <= MAX_FRAMES:
         raise InputError(
-            f"{path}:{start + 2}: Frames: {declared:g}, found {len(rows)}; valid: 2 to {MAX_FRAMES}"
+            f"{path}:{count_at}: Frames: {declared:g}, found {len(rows)}; valid: 2 to {MAX_FRAMES}"
         )
     values = [numbers(f"{path}:{i}", line.split(), channels) for i, line in rows]
     return np.arange(len(rows), dtype=np.float64) * np.float64(period), np.array(values)

@@ -25,12 +25,14 @@ class Joint:
     Attributes:
         parent: its parent's name; empty for the root.
         position: (n, 3), in the file's unit of length.
-        rotation: n rotations since the rest pose, in which the body faces +x.
+        rotation: n rotations since the rest pose, the one of zero angles.
+        rest: (3,) its position in that pose, which need not be one that a human takes.
     """
 
     parent: str
     position: Array
     rotation: Rotation
+    rest: Array
 
 
 @dataclass(frozen=True)
@@ -40,10 +42,12 @@ class Capture:
     Attributes:
         time: (n,) strictly increasing [s].
         joints: by name, parents first.
+        upright: whether z is known to be up; a kind of file may leave that open.
     """
 
     time: Array
     joints: dict[str, Joint]
+    upright: bool = True
 
 
 def bounded(path: Path, joints: int, frames: int) -> None:
@@ -63,7 +67,7 @@ def assembled(
     parents: dict[str, str],
     offsets: dict[str, Array],
     local: dict[str, Rotation],
-    root: Array,
+    moves: dict[str, Array],
     axes: Array,
 ) -> Capture:
     """Forward kinematics of a skeleton in the file's own axes.
@@ -73,22 +77,30 @@ def assembled(
         parents: joint to parent, parents first; the first joint is the root.
         offsets: (3,) from a joint's parent to it, in the parent's frame.
         local: n rotations in the parent's frame.
-        root: (n, 3) position of the root.
+        moves: (n, 3) in place of the offset, of the root and any joint that slides.
         axes: (3, 3) the file's axes in ours.
     """
     basis = Rotation.from_matrix(axes)
     position: dict[str, Array] = {}
     rotation: dict[str, Rotation] = {}
+    rest: dict[str, Array] = {}
     for name, parent in parents.items():
         if parent:
-            position[name] = position[parent] + rotation[parent].apply(offsets[name])
+            local_position = moves.get(name, offsets[name])
+            position[name] = position[parent] + rotation[parent].apply(local_position)
             rotation[name] = rotation[parent] * local[name]
+            rest[name] = rest[parent] + offsets[name]
         else:
-            position[name], rotation[name] = root, local[name]
+            position[name], rotation[name], rest[name] = moves[name], local[name], np.zeros(3)
     return Capture(
         time,
         {
-            name: Joint(parent, basis.apply(position[name]), basis * rotation[name] * basis.inv())
+            name: Joint(
+                parent,
+                basis.apply(position[name]),
+                basis * rotation[name] * basis.inv(),
+                basis.apply(rest[name]),
+            )
             for name, parent in parents.items()
         },
     )

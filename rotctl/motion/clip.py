@@ -25,6 +25,7 @@ MAX_SAMPLES = 3600
 MAX_JOINTS = 500
 
 RollAbout = Literal["left", "right", "head"]
+TurnAbout = RollAbout | Literal["face"]  # what is captured; no behaviour turns cartwheels
 Samples = Annotated[list[Finite], Field(min_length=12, max_length=MAX_SAMPLES)]
 Quaternion = tuple[Finite, Finite, Finite, Finite]
 
@@ -36,7 +37,7 @@ class Clip:
     Attributes:
         name: what it is called.
         roll_about: the trunk axis along world +y: `left` rolls forwards, `right` backwards,
-            `head` sideways, as a log.
+            `head` sideways, as a log, `face` sideways over hands and feet, as a cartwheel.
         joints: joint name to n samples over the phase [rad]; a name without a side is both
             sides, a joint not named is held at 0.
         pelvis: n orientations (w, x, y, z) of the pelvis in the world; without them it turns
@@ -49,7 +50,7 @@ class Clip:
     """
 
     name: str
-    roll_about: RollAbout
+    roll_about: TurnAbout
     joints: Annotated[dict[str, Samples], Field(min_length=1, max_length=MAX_JOINTS)]
     pelvis: Annotated[list[Quaternion], Field(max_length=MAX_SAMPLES)] | None = None
     character: str = ""

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation, Slerp
 
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
-from rotctl.motion.clip import RollAbout
+from rotctl.motion.clip import TurnAbout
 from rotctl.motion.reference import periodic
 from rotctl.motion.turning import AXIS, Motion, pelvis_turn, rotation_between_postures
 from rotctl.rotations import Array
@@ -16,7 +16,7 @@ SAMPLES = 72  # of a clip: every 5 degrees of phase
 _LEAST = 1e-4  # [rev] of AE from a posture to the next, so that there is an inverse
 
 
-def by_excursion(model: Model, cycle: Motion, roll_about: RollAbout, samples: int) -> Motion:
+def by_excursion(model: Model, cycle: Motion, roll_about: TurnAbout, samples: int) -> Motion:
     """The same cycle at even phases 2 pi k / samples of AE; phase 0 is the pelvis upright.
 
     Args:

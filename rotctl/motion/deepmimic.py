@@ -65,7 +65,7 @@ def read_deepmimic(path: Path) -> Capture:
         {name: parent for name, (parent, _, _) in _SKELETON.items()},
         {name: np.array(offset) for name, (_, offset, _) in _SKELETON.items()},
         local,
-        rows[:, 1:4],
+        {"root": rows[:, 1:4]},
         Y_UP_FACING_X,
     )
 
@@ -83,7 +83,9 @@ def _rows(path: Path) -> Array:
     for i, row in enumerate(rows, 1):
         if not isinstance(row, list) or len(row) != _ROW:
             found = len(row) if isinstance(row, list) else 0
-            raise InputError(f"{path}: frame {i}: {found} values, {_ROW} expected")
+            raise InputError(
+                f"{path}: frame {i}: {found} values, {_ROW} expected; only humanoid3d is read"
+            )
         for value in row:
             if type(value) not in (int, float) or not abs(value) < LARGEST:
                 raise InputError(f"{path}: frame {i}: {value!r:.40} is no number")

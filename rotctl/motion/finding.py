@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
-from rotctl.motion.clip import RollAbout
+from rotctl.motion.clip import TurnAbout
 from rotctl.motion.turning import Motion
 from rotctl.rotations import Array
 
@@ -28,8 +28,8 @@ def rolling_axis(turns: Array) -> Array:
     return np.asarray(axis if turns.sum(axis=0) @ axis >= 0.0 else -axis)
 
 
-def find_roll(time: Array, motion: Motion, turns: Array) -> tuple[int, int]:
-    """First and last frame of the roll that closes best.
+def find_roll(time: Array, motion: Motion, turns: Array) -> tuple[float, int, int]:
+    """The roll that closes best: its cost [rad], its first and last frame.
 
     Args:
         time: (n,) [s].
@@ -40,7 +40,7 @@ def find_roll(time: Array, motion: Motion, turns: Array) -> tuple[int, int]:
     """
     turned = np.append(0.0, np.cumsum(turns @ rolling_axis(turns))) / tau
     tried = np.unique(np.linspace(0, len(time) - 1, CANDIDATES).astype(int))
-    best, found = np.inf, None
+    best, found = float(np.inf), None
     for first in tried:
         later = tried[(tried > first) & (time[tried] <= time[first] + LONGEST)]
         span = np.abs(turned[later] - turned[first])  # there or back
@@ -51,24 +51,29 @@ def find_roll(time: Array, motion: Motion, turns: Array) -> tuple[int, int]:
         cost += MISSING * np.abs(np.abs(turned[later] - turned[first]) - 1.0)
         least = int(np.argmin(cost))
         if cost[least] < best:
-            best, found = cost[least], (int(first), int(later[least]))
+            best, found = float(cost[least]), (int(first), int(later[least]))
     if found is None:
         raise InputError(
             f"no roll found: the body turns {np.ptp(turned):.2f} rev at most; "
             "give --cycle START:END [s]"
         )
-    return found
+    return (best, *found)
 
 
-def roll_kind(motion: Motion) -> tuple[RollAbout, bool]:
+def roll_kind(motion: Motion) -> tuple[TurnAbout, bool, float]:
     """The trunk axis along +y, on average over a roll about +y; True if it is a mirror image.
 
-    A log roll with the head to -y is the mirror image of ours.
+    A log roll with the head to -y is the mirror image of ours, and so is a cartwheel to the
+    left. The third value is how far along +y the next axis lies, of the one that is taken [-].
     """
-    _, left, up = motion.pelvis.inv().apply([0.0, 1.0, 0.0]).mean(axis=0)
-    if abs(up) > abs(left):
-        return "head", bool(up < 0.0)
-    return ("left" if left > 0.0 else "right"), False
+    forward, left, up = motion.pelvis.inv().apply([0.0, 1.0, 0.0]).mean(axis=0)
+    _, nearly, most = sorted(abs(x) for x in (forward, left, up))
+    doubt = nearly / max(most, 1e-9)
+    if abs(up) == most:
+        return "head", bool(up < 0.0), doubt
+    if abs(forward) == most:
+        return "face", bool(forward < 0.0), doubt
+    return ("left" if left > 0.0 else "right"), False, doubt
 
 
 def _apart(motion: Motion, first: int, later: NDArray[np.int64]) -> Array:

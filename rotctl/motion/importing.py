@@ -1,7 +1,8 @@
 """A captured motion to a clip: read, retarget, cut out the roll, turn it to +x, close it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from math import tau
 from pathlib import Path
 
@@ -11,27 +12,26 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
-from rotctl.motion.asf_amc import RATE, read_amc
-from rotctl.motion.bvh import read_bvh
 from rotctl.motion.capture import Capture
 from rotctl.motion.clip import Clip
 from rotctl.motion.closing import Closed, close
 from rotctl.motion.cycle import SAMPLES, by_excursion
-from rotctl.motion.deepmimic import read_deepmimic
 from rotctl.motion.finding import find_roll, roll_kind, rolling_axis
 from rotctl.motion.flight import Flight, flights
+from rotctl.motion.glance import has_false_start, stood_up, stretches, up_axis
 from rotctl.motion.ground import centres
 from rotctl.motion.landmarks import Landmarks, find_landmarks
 from rotctl.motion.mirror import mirrored, symmetric
-from rotctl.motion.retarget import retarget
+from rotctl.motion.reading import NOTHING, Wishes
+from rotctl.motion.retarget import Retargeted, retarget
 from rotctl.motion.turning import Motion, qpos, rotation_between_postures
 from rotctl.motion.writing import make_clip
 from rotctl.rotations import Array
 
-LONGEST = 60.0  # [s] of capture that a roll is looked for in
+LONGEST = 60.0  # [s] of capture that are fitted
 FEWEST = 5  # frames of a cycle
 FINE = 1.0 / 120.0  # [s] a slower capture is interpolated to that
-FORMATS = ".bvh, .amc (with --skeleton FILE.asf), .txt or .json (DeepMimic)"
+BESIDE = 0.5  # [s] what is fitted on either side of a given cycle
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,11 @@ class Imported:
         closed: how the loop was closed.
         joint_names: nu names.
         mirrored: whether left and right were exchanged.
+        doubt: how far the second of the trunk's axes lies along the rolling axis, of the first [-].
         flights: of the whole time looked at.
+        roles: which joint of the file was taken for what.
+        up: the file's axis that was taken for up; empty where the file leaves no doubt.
+        false_start: whether the first frame was left out.
     """
 
     clip: Clip
@@ -60,33 +64,23 @@ class Imported:
     closed: Closed
     joint_names: tuple[str, ...]
     mirrored: bool
+    doubt: float
     flights: list[Flight]
+    roles: dict[str, str]
+    up: str
+    false_start: bool
 
 
-def read_capture(path: Path, skeleton: Path | None, rate: float | None) -> Capture:
-    """Read a motion file by its ending.
+@dataclass(frozen=True)
+class _Found:
+    """A roll in a fitted stretch of the capture: frames `first` to `last` of it."""
 
-    Args:
-        skeleton: of an .amc; without it the .asf of the same name.
-        rate: [Hz] instead of the file's own.
-
-    Raises:
-        InputError: one line that names the file and the line in it.
-    """
-    if rate is not None and not 1.0 <= rate <= 10_000.0:
-        raise InputError(f"--rate={rate:g}: valid: 1 to 10000 Hz")
-    ending = path.suffix.lower()
-    if ending == ".bvh":
-        capture = read_bvh(path)
-    elif ending == ".amc":
-        capture = read_amc(path, skeleton or path.with_suffix(".asf"), rate or RATE)
-    elif ending in (".txt", ".json"):
-        capture = read_deepmimic(path)
-    else:
-        raise InputError(f"{path}: unknown kind of file, valid: {FORMATS}")
-    if rate is None:
-        return capture
-    return Capture(np.arange(len(capture.time)) / rate, capture.joints)
+    cost: float
+    time: Array
+    fitted: Retargeted
+    turns: Array
+    first: int
+    last: int
 
 
 def import_motion(
@@ -98,6 +92,7 @@ def import_motion(
     symmetrise: bool = False,
     licence: str = "",
     progress: Callable[[int, int], object] | None = None,
+    wishes: Wishes = NOTHING,
 ) -> Imported:
     """Make a clip of a captured roll.
 
@@ -112,27 +107,40 @@ def import_motion(
     Raises:
         InputError: the capture is not of a human, or there is no roll in it.
     """
-    chosen = _frames(path, capture.time, cycle)
-    marks = find_landmarks(path, capture)
-    marks = Landmarks({name: at[chosen] for name, at in marks.points.items()}, marks.leg)
-    time, marks = _fine(capture.time[chosen], marks)
-    fitted = retarget(model, marks, progress)
-    motion, root = fitted.motion, fitted.root
-    turns = rotation_between_postures(model, motion)
-    flown = flights(model, time, _positions(model, motion, root), fitted.leg)
-
-    first, last = (0, len(time) - 1) if cycle else find_roll(time, motion, turns)
+    marks, up = find_landmarks(path, capture, wishes.joints), ""
+    if not capture.upright:
+        up = wishes.up or up_axis(marks)
+        marks = stood_up(marks, up)
+    time, false_start = capture.time, has_false_start(marks)
+    if false_start:
+        time, marks = time[1:], _part(marks, slice(1, None))
+    if cycle:
+        parts = [_around(cycle, time)]
+    else:
+        parts = stretches(path, time, marks)
+        lasts = sum(float(time[part][-1] - time[part][0]) for part in parts)
+        if lasts > LONGEST:
+            raise InputError(
+                f"{path}: the body turns round in {lasts:.0f} s of it, a roll is looked for in "
+                f"{LONGEST:g} s at most; give --cycle START:END [s]"
+            )
+    fine = [_fine(time[part], _part(marks, part)) for part in parts]
+    found, flown = _best(model, fine, cycle, progress)
+    time, fitted = found.time, found.fitted
+    motion, root, turns = fitted.motion, fitted.root, found.turns
+    first, last = found.first, found.last
     part = slice(first, last + 1)
     time, motion, root, turns = time[part], motion[part], root[part], turns[first:last]
     axis = rolling_axis(turns)
     to_x = Rotation.from_rotvec([0.0, 0.0, np.arctan2(axis[0], axis[1])])
     motion, root = Motion(motion.poses, to_x * motion.pelvis), to_x.apply(root)
-    kind, other_way = roll_kind(motion)
+    kind, other_way, doubt = roll_kind(motion)
     if other_way:
         motion, root = mirrored(model, motion), root * [1.0, -1.0, 1.0]
     if symmetrise:
-        if kind == "head":
-            raise InputError(f"{path}: --symmetric is for forward and backward rolls, not a log's")
+        if kind in ("head", "face"):
+            what = "a log's" if kind == "head" else "a cartwheel"
+            raise InputError(f"{path}: --symmetric is for forward and backward rolls, not {what}")
         motion, root = symmetric(model, motion), root * [1.0, 0.0, 1.0]
     turns = rotation_between_postures(model, motion)
     closed = close(motion, turns)
@@ -153,7 +161,7 @@ def import_motion(
     return Imported(
         clip=clip,
         segments=fitted.segments,
-        error=fitted.error,
+        error=fitted.error[part],
         start=float(time[0]),
         end=float(time[-1]),
         span=span,
@@ -161,27 +169,71 @@ def import_motion(
         closed=closed,
         joint_names=model.joint_names,
         mirrored=other_way,
+        doubt=doubt,
         flights=flown,
+        roles=marks.roles,
+        up=up,
+        false_start=false_start,
     )
 
 
-def _frames(path: Path, time: Array, cycle: tuple[float, float] | None) -> slice:
-    """Which frames are looked at."""
-    lasts = float(time[-1])
-    if cycle is None:
-        if lasts > LONGEST:
-            raise InputError(
-                f"{path}: lasts {lasts:.0f} s, a roll is looked for in {LONGEST:g} s at most; "
-                "give --cycle START:END [s]"
+def _best(
+    model: Model,
+    parts: list[tuple[Array, Landmarks]],
+    cycle: tuple[float, float] | None,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[_Found, list[Flight]]:
+    """Fit every stretch; the roll that closes best, and all flights."""
+    whole = sum(len(time) for time, _ in parts)
+    best, flown, done, complaint = None, [], 0, None
+    for time, marks in parts:
+        fitted = retarget(model, marks, partial(_told, progress, done, whole) if progress else None)
+        done += len(time)
+        turns = rotation_between_postures(model, fitted.motion)
+        flown += flights(model, time, _positions(model, fitted.motion, fitted.root), fitted.leg)
+        try:
+            cost, first, last = (
+                (0.0, *_within(cycle, time)) if cycle else find_roll(time, fitted.motion, turns)
             )
-        return slice(None)
+        except InputError as error:
+            complaint = complaint or error
+            continue
+        if best is None or cost < best.cost:
+            best = _Found(cost, time, fitted, turns, first, last)
+    if best is None:
+        assert complaint  # one of each stretch
+        raise complaint
+    return best, flown
+
+
+def _told(
+    progress: Callable[[int, int], object], before: int, whole: int, done: int, _: int
+) -> None:
+    progress(before + done, whole)
+
+
+def _around(cycle: tuple[float, float], time: Array) -> slice:
+    """The frames of a given cycle, and some beside it, so that the fit does not begin in it."""
     start, end = cycle
-    if not 0.0 <= start < end <= lasts + 1e-6:
-        raise InputError(f"--cycle={start:g}:{end:g}: valid: 0 to {lasts:.3f} s, START before END")
-    first, after = np.searchsorted(time, [start - 1e-6, end + 1e-6])
-    if after - first < FEWEST:
-        raise InputError(f"--cycle={start:g}:{end:g}: {after - first} frames, at least {FEWEST}")
-    return slice(int(first), int(after))
+    if not 0.0 <= start < end <= time[-1] + 1e-6:
+        raise InputError(
+            f"--cycle={start:g}:{end:g}: valid: 0 to {time[-1]:.3f} s, START before END"
+        )
+    first, last = _within(cycle, time)
+    if last - first + 1 < FEWEST:
+        raise InputError(f"--cycle={start:g}:{end:g}: {last - first + 1} frames, at least {FEWEST}")
+    near = np.flatnonzero((time >= start - BESIDE) & (time <= end + BESIDE))
+    return slice(int(near[0]), int(near[-1]) + 1)
+
+
+def _within(cycle: tuple[float, float], time: Array) -> tuple[int, int]:
+    """First and last frame of a cycle."""
+    first, after = np.searchsorted(time, [cycle[0] - 1e-6, cycle[1] + 1e-6])
+    return int(first), int(after) - 1
+
+
+def _part(marks: Landmarks, part: slice) -> Landmarks:
+    return replace(marks, points={name: at[part] for name, at in marks.points.items()})
 
 
 def _fine(time: Array, marks: Landmarks) -> tuple[Array, Landmarks]:
@@ -190,7 +242,7 @@ def _fine(time: Array, marks: Landmarks) -> tuple[Array, Landmarks]:
         return time, marks
     fine = np.linspace(time[0], time[-1], 1 + round((time[-1] - time[0]) / FINE))
     points = {name: CubicSpline(time, at)(fine) for name, at in marks.points.items()}
-    return fine, Landmarks(points, marks.leg)
+    return fine, replace(marks, points=points)
 
 
 def _positions(model: Model, motion: Motion, root: Array) -> Array:

@@ -1,54 +1,26 @@
 """A captured motion on one of our characters: each segment points where the actor's did.
 
 Only directions are matched, so that neither rest poses nor bone axes nor the proportions of
-the actor matter; the root follows the actor's hips, scaled by the length of the legs. Per
-frame the angles minimise the weighted differences of directions, with weak pulls to the
-previous frame and to zero, by Levenberg and Marquardt's method.
+the actor matter; the root follows the actor's hips, scaled by the length of the legs. Each frame
+is fitted from the one before (`fit`). A limb that is stuck in a pose that is only the best near
+by begins again from the best of a grid (`limbs`), and the frames before are mended.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
-from rotctl.motion.landmarks import BALL, Landmarks
+from rotctl.motion.fit import FORWARD, GAIN, LEFT, SEGMENTS, TO_PREVIOUS, UP, Fit, unit
+from rotctl.motion.landmarks import Landmarks
+from rotctl.motion.limbs import Limb
 from rotctl.motion.turning import Motion
 from rotctl.rotations import Array
 
-UP, LEFT, FORWARD, DOWN = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)
-
-# Body, direction in its frame, landmarks from and to, weight [-]. The pelvis's lateral axis
-# says most of where the body faces; head and feet are thin evidence in any capture.
-_SEGMENTS = (
-    ("pelvis", UP, "hips", "spine", 1.0),
-    ("pelvis", LEFT, "hip_r", "hip_l", 2.0),
-    ("chest", UP, "chest", "neck", 1.0),
-    ("chest", LEFT, "shoulder_r", "shoulder_l", 1.0),
-    ("head", UP, "head", "crown", 0.5),
-    ("head", FORWARD, "head", "nose", 0.5),
-    *(
-        (f"{body}_{side}", axis, f"{start}_{side}", f"{end}_{side}", weight)
-        for side in "lr"
-        for body, axis, start, end, weight in (
-            ("upper_arm", DOWN, "shoulder", "elbow", 1.0),
-            ("forearm", DOWN, "elbow", "wrist", 1.0),
-            ("thigh", DOWN, "hip", "knee", 1.0),
-            ("shin", DOWN, "knee", "ankle", 1.0),
-            ("foot", BALL, "ankle", "ball", 0.5),
-        )
-    ),
-)
-TO_ZERO = 0.03  # [1/rad] weight of each angle: decides what the directions leave open
-TO_PREVIOUS = 0.1  # [1/rad] weight of each angle's change since the last frame
-DAMPING = 1e-3  # at first, of Levenberg and Marquardt
-ITERATIONS = 40
-FIRST_ITERATIONS = 300  # the first frame starts from the upright pose
-LONGEST = 0.5  # [rad] of a step
-ENOUGH = 1e-4  # [rad] a smaller step ends the iterations
+STUCK = np.radians(2.0)  # an error of a limb from which other starts are tried
+RETRY = 5  # frames, after a start that brought nothing: the joints' ranges may not allow more
 
 
 @dataclass(frozen=True)
@@ -81,17 +53,33 @@ def retarget(
     Raises:
         InputError: the character has not the bodies of a human.
     """
-    fit = _Fit(model)
+    fit = Fit(model)
     scale = fit.leg / marks.leg
     targets = np.stack(
-        [_unit(marks.points[end] - marks.points[start]) for _, _, start, end, _ in _SEGMENTS],
+        [unit(marks.points[end] - marks.points[start]) for _, _, start, end, _ in SEGMENTS],
         axis=1,
     )
     n = len(targets)
-    positions, errors = np.empty((n, model.mj.nq)), np.empty((n, len(_SEGMENTS)))
-    position = fit.beginning(targets[0])
+    positions, errors = np.empty((n, model.mj.nq)), np.empty((n, len(SEGMENTS)))
+    position, waits = fit.afresh(targets[0]), [0] * len(fit.limbs)
     for i in range(n):
         position = fit.solve(position, targets[i], TO_PREVIOUS if i else 0.0)
+        for k, limb in enumerate(fit.limbs):
+            waits[k] = max(0, waits[k] - 1)
+            stuck = fit.limb_error(limb, position, targets[i])
+            if stuck < STUCK or waits[k]:
+                continue
+            better = fit.again(limb, position, targets[i])
+            if fit.limb_error(limb, better, targets[i]) > STUCK:
+                better = min(
+                    (better, fit.afresh(targets[i])),
+                    key=lambda tried: fit.limb_error(limb, tried, targets[i]),
+                )
+            if fit.limb_error(limb, better, targets[i]) < stuck - GAIN:
+                position = better
+                _mend(fit, limb, targets, positions[:i], errors, position)
+            else:
+                waits[k] = RETRY
         positions[i], errors[i] = position, fit.error(position, targets[i])
         if progress:
             progress(i + 1, n)
@@ -101,107 +89,18 @@ def retarget(
     return Retargeted(motion, root, errors, tuple(_names()), fit.leg)
 
 
+def _mend(
+    fit: Fit, limb: Limb, targets: Array, before: Array, errors: Array, position: Array
+) -> None:
+    """Go back from where a better pose was found, as far as it is better there too."""
+    for i in range(len(before) - 1, -1, -1):
+        position = fit.solve(position, targets[i], TO_PREVIOUS)
+        was = fit.limb_error(limb, before[i], targets[i])
+        if not fit.limb_error(limb, position, targets[i]) < was - GAIN:
+            break
+        before[i], errors[i] = position, fit.error(position, targets[i])
+
+
 def _names() -> list[str]:
     axes = {UP: "up", LEFT: "left", FORWARD: "forward"}
-    return [f"{body} {axes[axis]}" if axis in axes else body for body, axis, *_ in _SEGMENTS]
-
-
-class _Fit:
-    """The character's side of the problem."""
-
-    def __init__(self, model: Model) -> None:
-        mj = self.mj = model.mj
-        self.data = mujoco.MjData(mj)
-        self.low, self.high = model.joint_range.T
-        names = [mj.body(i).name for i in range(mj.nbody)]
-        missing = sorted({body for body, *_ in _SEGMENTS} - set(names))
-        if missing:
-            raise InputError(f"the character has no body {', '.join(missing)}; no human to fit")
-        self.bodies = [names.index(body) for body, *_ in _SEGMENTS]
-        self.axes = np.array([_unit(np.array(axis)) for _, axis, *_ in _SEGMENTS])
-        self.weights = np.array([weight for *_, weight in _SEGMENTS])
-        thigh = mj.body("thigh_l").id
-        self.leg = float(sum(np.linalg.norm(mj.body(b).pos) for b in ("shin_l", "foot_l")))
-        self.hips = mj.body_pos[thigh] * [1.0, 0.0, 1.0]  # between the hip joints
-        self._rotation = np.empty((3, mj.nv))
-
-    def beginning(self, targets: Array) -> Array:
-        """Zero pose, the pelvis as the targets have it."""
-        position = np.zeros(self.mj.nq)
-        up, left = targets[0], targets[1]
-        forward = np.cross(left, up)
-        position[3] = 1.0
-        if np.linalg.norm(forward) > 0.1:  # else the file is no human's, and anything will do
-            forward = _unit(forward)
-            axes = np.stack([forward, left, np.cross(forward, left)], axis=1)
-            position[3:7] = Rotation.from_matrix(axes).as_quat(scalar_first=True)
-        position[7:] = np.clip(0.0, self.low, self.high)
-        return position
-
-    def solve(self, start: Array, targets: Array, to_previous: float) -> Array:
-        """The position nearest to the targets (k, 3), from `start`."""
-        before = start[7:]
-        position, damping = start.copy(), DAMPING
-        rows, misses = self._system(position, targets, before, to_previous)
-        for _ in range(ITERATIONS if to_previous else FIRST_ITERATIONS):
-            step = self._step(rows, misses, position[7:], damping)
-            moved = position.copy()
-            mujoco.mj_integratePos(self.mj, moved, np.append(np.zeros(3), step), 1.0)
-            moved[7:] = np.clip(moved[7:], self.low, self.high)
-            new_rows, new_misses = self._system(moved, targets, before, to_previous)
-            if new_misses @ new_misses <= misses @ misses:
-                position, rows, misses, damping = moved, new_rows, new_misses, 0.3 * damping
-                if np.abs(step).max() < ENOUGH:
-                    break
-            else:
-                damping *= 10.0
-                if damping > 1e6:
-                    break
-        return position
-
-    def _step(self, rows: Array, misses: Array, angles: Array, damping: float) -> Array:
-        """A damped step (nv - 3,) [rad]; joints that push against their limits rest."""
-        slope = rows.T @ misses
-        pushed = slope[3:]
-        rests = ((angles <= self.low) & (pushed < 0)) | ((angles >= self.high) & (pushed > 0))
-        free = np.append(np.ones(3, dtype=bool), ~rests)
-        some = rows[:, free]
-        step = np.zeros(len(free))
-        step[free] = np.linalg.solve(some.T @ some + damping * np.eye(free.sum()), slope[free])
-        return np.asarray(step * min(1.0, LONGEST / max(np.abs(step).max(), 1e-12)))
-
-    def error(self, position: Array, targets: Array) -> Array:
-        """Angle between each segment and its target (k,) [rad]."""
-        return np.asarray(
-            2.0 * np.arcsin(0.5 * np.linalg.norm(targets - self._point(position), axis=1))
-        )
-
-    def _point(self, position: Array) -> Array:
-        """Where the segments point (k, 3)."""
-        self.data.qpos[:] = position
-        mujoco.mj_kinematics(self.mj, self.data)
-        turned = self.data.xmat[self.bodies].reshape(-1, 3, 3)
-        return np.asarray(np.einsum("kij,kj->ki", turned, self.axes))
-
-    def _system(
-        self, position: Array, targets: Array, before: Array, to_previous: float
-    ) -> tuple[Array, Array]:
-        """Rows (m, nv - 3) and what is missing (m,): rows @ step = misses."""
-        pointing = self._point(position)
-        mujoco.mj_comPos(self.mj, self.data)
-        misses = self.weights[:, None] * (targets - pointing)
-        rows = []
-        for body, direction, weight in zip(self.bodies, pointing, self.weights, strict=True):
-            mujoco.mj_jacBody(self.mj, self.data, None, self._rotation, body)
-            rows.append(weight * np.cross(self._rotation[:, 3:], direction, axis=0))
-        angles = position[7:]
-        own = np.hstack([np.zeros((len(angles), 3)), np.eye(len(angles))])
-        return (
-            np.vstack([*rows, TO_ZERO * own, to_previous * own]),
-            np.concatenate([misses.ravel(), -TO_ZERO * angles, to_previous * (before - angles)]),
-        )
-
-
-def _unit(vectors: Array) -> Array:
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.maximum(length, 1e-9))
+    return [f"{body} {axes[axis]}" if axis in axes else body for body, axis, *_ in SEGMENTS]

@@ -8,15 +8,16 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.motion.clip import RollAbout
+from rotctl.motion.clip import TurnAbout
 from rotctl.rotations import Array
 
 AXIS = np.array([0.0, 1.0, 0.0])  # every roll is about world +y, to +x
 # Columns are the pelvis's forward, left and up at phase 0, in the world.
-_UPRIGHT: dict[RollAbout, Array] = {
+_UPRIGHT: dict[TurnAbout, Array] = {
     "left": np.eye(3),
     "right": np.diag([-1.0, -1.0, 1.0]),
     "head": np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
+    "face": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
 }
 
 
@@ -36,7 +37,7 @@ class Motion:
         return Motion(self.poses[chosen], self.pelvis[chosen])
 
 
-def upright(roll_about: RollAbout) -> Rotation:
+def upright(roll_about: TurnAbout) -> Rotation:
     """The pelvis's orientation at phase 0: upright, or supine with the head to +y."""
     return Rotation.from_matrix(_UPRIGHT[roll_about])
 
@@ -46,7 +47,7 @@ def rolled_by(angles: Array) -> Rotation:
     return Rotation.from_rotvec(np.outer(angles, AXIS))
 
 
-def pelvis_turn(pelvis: Rotation, roll_about: RollAbout) -> Array:
+def pelvis_turn(pelvis: Rotation, roll_about: TurnAbout) -> Array:
     """How far each orientation has turned about +y since phase 0 (n,), unwrapped [rad]."""
     turned = (pelvis * upright(roll_about).inv()).as_matrix()
     angle = np.arctan2(turned[:, 0, 2] - turned[:, 2, 0], turned[:, 0, 0] + turned[:, 2, 2])
