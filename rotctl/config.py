@@ -9,24 +9,19 @@ import copy
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import yaml
-from hydra import compose, initialize_config_dir
-from hydra.core.global_hydra import GlobalHydra
-from hydra.core.override_parser.types import Override, OverrideType
-from hydra.errors import HydraException
-from omegaconf import OmegaConf
-from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 from pydantic import Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import documents
+from rotctl import choosing, documents
 from rotctl.behaviours import BehaviourSettings
 from rotctl.checked import brief, checked, clip, unknown_key
+from rotctl.choosing import Assignment, simple
 from rotctl.control import ControllerSettings
 from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
@@ -39,15 +34,16 @@ from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
-from rotctl.overrides import single
 from rotctl.plain import NOTHING, Way, dotted, exchanged, leaves, member, put, way
 from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
 
+if TYPE_CHECKING:
+    from hydra.core.override_parser.types import Override
+
 PROSE = ("description", "source")  # may have several lines
 LONGEST_TEXT = 200
-MISSING = "???"  # OmegaConf's word for a value that is still to be given
 LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
 
 
@@ -113,27 +109,36 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     Raises:
         InputError: as for `load`.
     """
+    quick = [one for one in map(simple, overrides) if one]
+    if len(quick) == len(overrides):
+        data = _set_on_choices(quick)
+        if data is not None:
+            return data
+    from rotctl.overrides import assigned, single
+
     found = [single(override) for override in overrides]
     require_plain([(str(o.key_or_group), str(o.value())) for o in found if _is_choice(o)])
-    quickly = _set_on_choices(overrides, found)
-    return _by_hydra(overrides, found) if quickly is None else quickly
+    quick = [one for one in map(assigned, found) if one]
+    if len(quick) == len(overrides):
+        data = _set_on_choices(quick)
+        if data is not None:
+            return data
+    return _by_hydra(overrides, found)
 
 
-def _set_on_choices(overrides: list[str], found: list[Override]) -> dict[str, Any] | None:
-    """What Hydra makes of the choices among them, with the other values set on it.
+def _set_on_choices(found: list[Assignment]) -> dict[str, Any] | None:
+    """What the choices among them make, with the other values set on it.
 
     None where more than that is asked, or something is wrong, for Hydra to tell.
     """
-    plain = all(o.type == OverrideType.CHANGE and not o.package for o in found)
-    if not plain or any(MISSING in text for text in overrides):
+    chosen = [one for one in found if choices(one.key)]
+    if any(one.value not in choices(one.key) for one in chosen):
         return None
-    chosen = [text for text, o in zip(overrides, found, strict=True) if choices(_key(o))]
     try:
         data: Any = copy.deepcopy(_chosen(tuple(chosen), conf_dir(), _stamp(conf_dir())))
     except InputError:
         return None
-    for override in found:
-        key, value = _key(override), override.value()
+    for key, value in found:
         if choices(key):
             continue
         data = exchanged(data, way(key), value)
@@ -143,9 +148,15 @@ def _set_on_choices(overrides: list[str], found: list[Override]) -> dict[str, An
 
 
 @lru_cache(maxsize=64)
-def _chosen(overrides: tuple[str, ...], folder: Path, stamp: tuple[int, ...]) -> dict[str, Any]:
+def _chosen(chosen: tuple[Assignment, ...], folder: Path, stamp: tuple[int, ...]) -> dict[str, Any]:
     """Composed of choices alone, from files as they were at some time."""
-    return _by_hydra(list(overrides), [single(override) for override in overrides])
+    data = choosing.composed(chosen, folder)
+    if data is not None:
+        return data
+    from rotctl.overrides import single
+
+    texts = [f"{group}={name}" for group, name in chosen]
+    return _by_hydra(texts, [single(text) for text in texts])
 
 
 def _stamp(folder: Path) -> tuple[int, ...]:
@@ -153,11 +164,13 @@ def _stamp(folder: Path) -> tuple[int, ...]:
     return tuple(path.stat().st_mtime_ns for path in sorted(folder.rglob("*.yaml")))
 
 
-def _key(override: Override) -> str:
-    return str(override.key_or_group)
+def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
+    from hydra import compose, initialize_config_dir
+    from hydra.core.global_hydra import GlobalHydra
+    from hydra.errors import HydraException
+    from omegaconf import OmegaConf
+    from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 
-
-def _by_hydra(overrides: list[str], found: list[Override]) -> dict[str, Any]:
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
@@ -250,12 +263,29 @@ def _absurd_number(parts: Way, value: Any) -> str:
 def to_dict(config: Config) -> dict[str, Any]:
     """The config as plain data, which nobody may change."""
     parts = {part.name: getattr(config, part.name) for part in fields(config)}
-    return {name: _plain_part(name, part) for name, part in parts.items()}
+    return {name: _plain_part(part) for name, part in parts.items()}
 
 
 @kept(most=1000)
-def _plain_part(name: str, part: Any) -> Any:
-    return _adapter(name).dump_python(part)
+def _plain_part(part: Any) -> Any:
+    return _plain_data(part)
+
+
+@cache
+def _names(shape: Any) -> tuple[str, ...]:
+    return tuple(part.name for part in fields(shape))
+
+
+def _plain_data(value: Any) -> Any:
+    """As pydantic dumps it, whose serialisers take longer to build than a run needs them."""
+    if is_dataclass(value):
+        shape: Any = type(value)
+        return {name: _plain_data(getattr(value, name)) for name in _names(shape)}
+    if isinstance(value, dict):
+        return {key: _plain_data(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(map(_plain_data, value))
+    return value
 
 
 def to_yaml(config: Config) -> str:
@@ -272,11 +302,11 @@ def _yaml(part: str) -> str:
     return yaml.safe_dump(data, sort_keys=False, default_flow_style=flow, width=100)
 
 
-def _is_choice(override: Override) -> bool:
+def _is_choice(override: "Override") -> bool:
     return bool(choices(str(override.key_or_group))) and isinstance(override.value(), str)
 
 
-def _explain(error: Exception, overrides: list[Override]) -> str:
+def _explain(error: Exception, overrides: "list[Override]") -> str:
     """What Hydra could not do, in one line of our own."""
     chosen = tuple(str(o.input_line) for o in overrides if _is_choice(o))
     valid = _plain(chosen if len(chosen) < len(overrides) else ())  # () is the default
@@ -289,7 +319,7 @@ def _explain(error: Exception, overrides: list[Override]) -> str:
     return clip(" ".join(str(error).split()))
 
 
-def _complaint(override: Override, valid: dict[str, Any]) -> str:
+def _complaint(override: "Override", valid: dict[str, Any]) -> str:
     """Why an override does not fit a config; empty if it does."""
     key = str(override.key_or_group)
     if choices(key) and key not in valid:

@@ -75,24 +75,7 @@ def require_plain(chosen: Iterable[tuple[str, str]]) -> None:
             waiting += _defaults(conf_dir() / group / f"{name}.yaml")
 
 
-def _defaults(path: Path) -> list[tuple[str, str]]:
-    """The choices that a file brings."""
-    data = _read(path)
-    found = data.get("defaults", [])
-    if not isinstance(found, list):
-        raise InputError(f"{path}: defaults: must be a list, in brackets")
-    pairs = []
-    for entry in found:
-        named = entry if isinstance(entry, dict) else {path.parent.name: entry}
-        for key, name in named.items() if entry != "_self_" else ():
-            match = _DEFAULT.fullmatch(key)
-            if not match or name not in choices(match[1]):
-                raise InputError(f"{path}: defaults: {key}: {name}: no such choice of a group")
-            pairs.append((match[1], name))
-    return pairs
-
-
-def _read(path: Path) -> dict[str, Any]:
+def content(path: Path) -> dict[str, Any]:
     """The data of a file of conf/.
 
     Raises:
@@ -108,9 +91,26 @@ def _read(path: Path) -> dict[str, Any]:
     return data
 
 
+def _defaults(path: Path) -> list[tuple[str, str]]:
+    """The choices that a file brings."""
+    data = content(path)
+    found = data.get("defaults", [])
+    if not isinstance(found, list):
+        raise InputError(f"{path}: defaults: must be a list, in brackets")
+    pairs = []
+    for entry in found:
+        named = entry if isinstance(entry, dict) else {path.parent.name: entry}
+        for key, name in named.items() if entry != "_self_" else ():
+            match = _DEFAULT.fullmatch(key)
+            if not match or name not in choices(match[1]):
+                raise InputError(f"{path}: defaults: {key}: {name}: no such choice of a group")
+            pairs.append((match[1], name))
+    return pairs
+
+
 def _described(path: Path) -> str:
     try:
-        description = _read(path).get("description")
+        description = content(path).get("description")
         text = files.text(path, documents.LARGEST, linked=True)
         return " ".join(str(description or _first_comment(text)).split())
     except InputError as error:

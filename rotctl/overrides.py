@@ -8,10 +8,11 @@ import re
 from itertools import accumulate
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
+from hydra.core.override_parser.types import Override, OverrideType
 from hydra.errors import HydraException
 
 from rotctl.checked import brief, clip
+from rotctl.choosing import MISSING, Assignment
 from rotctl.errors import InputError
 from rotctl.listing import choices
 
@@ -75,3 +76,10 @@ def single(override: str) -> Override:
     if valid and not isinstance(value, dict) and value not in valid:
         raise InputError(f"{key}={brief(value)}: no such choice; valid: {', '.join(valid)}")
     return found
+
+
+def assigned(found: Override) -> Assignment | None:
+    """The value that an override sets, or the choice it makes; None where it does more."""
+    if found.type != OverrideType.CHANGE or found.package or MISSING in str(found.input_line):
+        return None
+    return Assignment(str(found.key_or_group), found.value())

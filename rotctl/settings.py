@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, AllowInfNan, ConfigDict, Field, Strict
 
-STRICT = ConfigDict(extra="forbid")
+STRICT = ConfigDict(defer_build=True, extra="forbid")
 
 
 def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:

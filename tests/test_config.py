@@ -9,11 +9,13 @@ from dataclasses import FrozenInstanceError, asdict
 import pytest
 import yaml
 
+from rotctl import choosing
 from rotctl import config as module
+from rotctl.choosing import simple
 from rotctl.config import _by_hydra as by_hydra
 from rotctl.config import check, composed, load, to_dict, to_yaml
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
+from rotctl.listing import conf_dir, groups
 from rotctl.overrides import single
 
 GROUPS = (
@@ -392,3 +394,68 @@ def test_a_file_that_changed_is_read_again(tmp_path, monkeypatch):
     file = tmp_path / "conf" / "start" / "rest.yaml"
     file.write_text(file.read_text().replace("pitch: [-0.3, 0.0]", "pitch: [-0.2, 0.0]"))
     assert composed(["start=rest"])["start"]["pitch"] == [-0.2, 0.0]
+
+
+# ---------------------------------------------------------------- without Hydra
+
+
+def one_of_each():
+    """Choices of all groups, each at least once; behaviours alone, as they bring others."""
+    others = {group: [*names] for group, names in groups().items() if group not in BROUGHT}
+    most = max(map(len, others.values()))
+    mixed = [{g: names[i % len(names)] for g, names in others.items()} for i in range(most)]
+    return [*({"behaviour": name} for name in groups()["behaviour"]), *mixed]
+
+
+BROUGHT = ("behaviour", "reference")  # the second is added with a plus
+CHOICES = [[f"{group}={name}" for group, name in some.items()] for some in one_of_each()]
+
+
+@pytest.mark.parametrize("overrides", CHOICES, ids=" ".join)
+def test_what_choices_make_is_what_hydra_makes_of_them(overrides):
+    made = choosing.composed(map(simple, overrides), conf_dir())
+    assert made == by_hydra(overrides, [single(text) for text in overrides])
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a=1", 1),
+        ("a.b=-2", -2),
+        ("a=1.50", 1.5),
+        ("a=1.0e-3", 1e-3),
+        ("a_1.b=some_word", "some_word"),
+    ],
+)
+def test_a_simple_override_is_what_hydra_reads_in_it(text, value):
+    found, assigned = simple(text), single(text)
+    assert found == (str(assigned.key_or_group), assigned.value()) == (text.split("=")[0], value)
+    assert type(found.value) is type(assigned.value()) is type(value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a", "+a=1", "~a", "a=", "a=01", "a=1_0", "a=1e3", "a=.5", "a=true", "a=Null", "a=nan",
+     "a=[1]",
+     "a='x'", "a=x y", "a=1,2", "a@b=c", "a/b=c", "a[0]=1", "a.0=1", "a=x-y", "a=${b}", "hydra.a=1",
+     "a=" + "9" * 30, "a=x:y", " a=1"],
+)  # fmt: skip
+def test_what_is_not_simple_is_left_to_hydra(text):
+    assert simple(text) is None
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("start/rest.yaml", "pitch: 1e-1\n"),
+        ("start/rest.yaml", "# @package _global_\n"),
+        ("start/rest.yaml", "pitch: ???\n"),
+        ("start/rest.yaml", "defaults: [tucked]\n"),
+        ("start/rest.yaml", "defaults: [_self_, {optional tucked: x}]\n"),
+        ("config.yaml", "defaults: [_self_, {start: rest}]\n"),
+    ],
+)
+def test_files_that_say_more_are_left_to_hydra(tmp_path, file, text):
+    shutil.copytree(conf_dir(), tmp_path / "conf")
+    (tmp_path / "conf" / file).write_text(text)
+    assert choosing.composed([simple("start=rest")], tmp_path / "conf") is None

@@ -46,6 +46,9 @@ def add_run(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
+    from rotctl.headless import mujoco_without_opengl
+
+    mujoco_without_opengl()
     from rotctl.config import load, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
     from rotctl.run import run

@@ -46,6 +46,9 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     from tqdm import tqdm
 
+    from rotctl.headless import mujoco_without_opengl
+
+    mujoco_without_opengl()
     from rotctl.results import experiments
     from rotctl.sweep import keep
     from rotctl.sweep.launch import launch

@@ -10,12 +10,12 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
-from importlib import import_module
+from importlib import import_module, reload
 from typing import Any
 
 from rotctl.errors import InputError
+from rotctl.headless import VARIABLE
 
-VARIABLE = "MUJOCO_GL"
 HINT = "on Debian: apt-get install libosmesa6"
 # osmesa first: in software a picture has the same bytes with and without a GPU.
 _CANDIDATES = ("osmesa", "egl") if sys.platform == "linux" else ("glfw",)
@@ -87,18 +87,6 @@ def try_out(name: str) -> None:
         drawing.free()
 
 
-def not_needed() -> None:
-    """Import MuJoCo without OpenGL, which also works where `MUJOCO_GL` makes no sense."""
-    before = os.environ.get(VARIABLE)
-    os.environ[VARIABLE] = "disable"
-    try:
-        import_module("mujoco")
-    finally:
-        del os.environ[VARIABLE]
-        if before is not None:
-            os.environ[VARIABLE] = before
-
-
 @contextmanager
 def context(name: str, width: int, height: int) -> Iterator[None]:
     """A current OpenGL context of a backend, for pictures of width x height pixels.
@@ -107,10 +95,17 @@ def context(name: str, width: int, height: int) -> Iterator[None]:
     loader of OpenGL functions reads the environment when the first context is made.
     """
     os.environ[VARIABLE] = name
-    module = f"mujoco.{name}" if name in ("osmesa", "egl") else "mujoco.gl_context"
-    made: Any = import_module(module).GLContext(width, height)
+    made: Any = _module(name).GLContext(width, height)
     try:
         made.make_current()
         yield
     finally:
         made.free()
+
+
+def _module(name: str) -> Any:
+    """MuJoCo's module of a backend, which has none where it was imported without OpenGL."""
+    if name in ("osmesa", "egl", "glfw", "cgl"):
+        return import_module(f"mujoco.{name}")
+    module = import_module("mujoco.gl_context")
+    return module if hasattr(module, "GLContext") else reload(module)

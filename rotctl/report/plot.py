@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import files
+from rotctl.headless import mujoco_without_opengl
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
-from rotctl.report import character, gl, stored_model
+from rotctl.report import character, stored_model
 from rotctl.report.rows import drawable, moderate, window
 from rotctl.report.signals import angular_rates, linear_rates, signals
 from rotctl.report.timeline import contact_bars
@@ -59,7 +60,7 @@ def plot(log: RunLog, out: Path, start: float | None = None, end: float | None =
     log = moderate(log)
     time = drawable(log, log["trajectory/qpos"])
     first, last = window(time, start, end)
-    gl.not_needed()
+    mujoco_without_opengl()
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure

@@ -12,8 +12,8 @@ from pathlib import Path
 from string import Template
 
 from rotctl import __version__, files
+from rotctl.headless import mujoco_without_opengl
 from rotctl.log import RunLog
-from rotctl.report import gl
 from rotctl.report.pack import pack
 from rotctl.report.policy import BESIDE, policy, this
 from rotctl.report.title import Title, title
@@ -62,7 +62,7 @@ def page(log: RunLog, compare: RunLog | None = None, site: Site | None = None) -
     Args:
         site: None: the page stands alone.
     """
-    gl.not_needed()
+    mujoco_without_opengl()
     # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
     from rotctl.report.replay_data import data
 

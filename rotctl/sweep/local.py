@@ -18,6 +18,7 @@ from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
 from rotctl.errors import InputError
+from rotctl.headless import mujoco_without_opengl
 from rotctl.sweep.engines import Failure, carried_out
 
 T = TypeVar("T")
@@ -149,6 +150,7 @@ def _started() -> Worker:
 
 def _serve(pipe: Connection) -> None:
     """The life of a worker: until the driver closes the pipe, or is gone."""
+    mujoco_without_opengl()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the driver decides
     while True:
         try:

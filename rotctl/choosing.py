@@ -1,0 +1,168 @@
+"""What choices of config groups make together: what Hydra would make of them, without it.
+
+To import Hydra and to compose with it takes longer than to simulate ten seconds. Most configs are
+plain: files whose defaults name others of their group, or choices for other groups. These are
+composed here; of whatever else there is in a file nothing is made, and Hydra is asked. A test holds
+all that is shipped to what Hydra makes of it.
+"""
+
+import re
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rotctl import documents, files, plain
+from rotctl.listing import content
+
+_KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
+_INTEGER = re.compile(r"[+-]?(?:0|[1-9][0-9]{0,17})")
+_FLOAT = re.compile(r"[+-]?(?:0|[1-9][0-9]*)\.[0-9]+(?:e[+-]?[0-9]+)?")
+_WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_NO_WORDS = ("true", "false", "null", "inf", "nan")  # what YAML or Hydra takes for more
+_ELSEWHERE = re.compile(r"override /(\w+)@_global_\.\1")
+SELF, MISSING = "_self_", "???"
+
+
+class Assignment(NamedTuple):
+    """A value for a key, or the choice of a group."""
+
+    key: str
+    value: Any
+
+
+def simple(override: str) -> Assignment | None:
+    """An override that is a number or a word; None for whatever needs Hydra's grammar."""
+    key, _, text = override.partition("=")
+    if len(override) > documents.DEEPEST**2 or not _KEY.fullmatch(key) or key.startswith("hydra"):
+        return None
+    if _INTEGER.fullmatch(text):
+        return Assignment(key, int(text))
+    if _FLOAT.fullmatch(text):
+        return Assignment(key, float(text))
+    if _WORD.fullmatch(text) and text.lower() not in _NO_WORDS:
+        return Assignment(key, text)
+    return None
+
+
+def composed(chosen: Iterable[Assignment], folder: Path) -> dict[str, Any] | None:
+    """The config of the choices alone; None where Hydra has to be asked.
+
+    Args:
+        folder: of `config.yaml` and the groups.
+
+    Raises:
+        InputError: a file is wrong; one line that names it.
+    """
+    try:
+        return _composed(dict(chosen), folder)
+    except _NotPlainError:
+        return None
+
+
+class _NotPlainError(Exception):
+    """More than is made here."""
+
+
+class _File(NamedTuple):
+    """A file of a group.
+
+    Attributes:
+        others: of its group that it builds on, and `SELF`, in the order in which they are merged.
+        asks: group -> choice, for other groups.
+    """
+
+    own: dict[str, Any]
+    others: tuple[str, ...]
+    asks: Mapping[str, str]
+
+
+def _composed(chosen: Mapping[str, str], folder: Path) -> dict[str, Any]:
+    root = content(folder / "config.yaml")
+    listed = [entry for entry in root.get("defaults", []) if entry != SELF]
+    if root.get("defaults", [])[-1:] != [SELF] or not all(isinstance(e, dict) for e in listed):
+        raise _NotPlainError
+    usual = {group: name for entry in listed for group, name in entry.items()}
+    if not chosen.keys() <= usual.keys() or len(usual) != len(listed):
+        raise _NotPlainError
+    asked = dict(chosen)
+    settled: set[str] = set()
+    for group in reversed(usual):  # who comes later may ask for what comes before
+        settled.add(group)
+        for other, name in _asks(folder / group, asked.setdefault(group, usual[group])):
+            if other not in usual or other in settled:
+                raise _NotPlainError
+            asked.setdefault(other, name)
+    data: dict[str, Any] = {}
+    for group in usual:
+        data = _merged(data, {group: _content(folder / group, asked[group])})
+    return _merged(data, {key: value for key, value in root.items() if key != "defaults"})
+
+
+def _asks(group: Path, name: str) -> list[tuple[str, str]]:
+    """What a file asks of other groups, before what those ask that it builds on."""
+    file = _file(group, name)
+    found = list(file.asks.items())
+    for other in reversed(file.others):
+        found += _asks(group, other) if other != SELF else []
+    return found
+
+
+def _content(group: Path, name: str) -> dict[str, Any]:
+    file = _file(group, name)
+    data: dict[str, Any] = {}
+    for other in file.others:
+        data = _merged(data, file.own if other == SELF else _content(group, other))
+    return data
+
+
+def _file(group: Path, name: str) -> _File:
+    path = group / f"{name}.yaml"
+    if not name.isidentifier() or not path.exists():
+        raise _NotPlainError
+    return _read(path, path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=256)
+def _read(path: Path, changed: int) -> _File:
+    """A file as it was at some time."""
+    data = content(path)
+    others, asks = [], {}
+    for entry in data.get("defaults", [SELF]):
+        if isinstance(entry, str) and entry.isidentifier():
+            others.append(entry)
+            continue
+        if not isinstance(entry, dict) or len(entry) > 1:
+            raise _NotPlainError
+        ((key, name),) = entry.items()
+        match = _ELSEWHERE.fullmatch(key)
+        if not match or not isinstance(name, str):
+            raise _NotPlainError
+        asks[match[1]] = name
+    own = {key: value for key, value in data.items() if key != "defaults"}
+    odd = "@package" in files.text(path, documents.LARGEST, linked=True)
+    if odd or SELF not in others or any(map(_read_otherwise, plain.leaves(own))):
+        raise _NotPlainError
+    return _File(own, tuple(others), asks)
+
+
+def _read_otherwise(leaf: tuple[plain.Way, Any]) -> bool:
+    """Whether Hydra's YAML takes a value for something else, such as 1e-5 for a number."""
+    value = leaf[1]
+    if not isinstance(value, str):
+        return False
+    try:
+        float(value.replace("_", ""))
+    except ValueError:
+        return value == MISSING
+    return True
+
+
+def _merged(base: Any, over: Any) -> Any:
+    """Keys of both, within each other; of what is no dict, the latter."""
+    if not isinstance(base, dict) or not isinstance(over, dict):
+        return over
+    inner = {
+        key: _merged(base[key], value) if key in base else value for key, value in over.items()
+    }
+    return {**base, **inner}
