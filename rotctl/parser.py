@@ -23,6 +23,7 @@ examples:
   rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
   rotctl plot runs/<run id>/run.h5 --out roll.pdf
   rotctl inspect runs/<run id>/run.h5             what is in a log
+  rotctl export runs/<run id>/run.h5 --to gltf    for Blender, viewers, trackers, simulators
   rotctl verify runs/<run id>/run.h5              run it again: the same bits?
   rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
 
@@ -33,7 +34,7 @@ repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad in
 
 # In the order of the help.
 COMMANDS = (
-    *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot),
+    *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
     *(runs.add_list, runs.add_show, logs.add_inspect, logs.add_verify, runs.add_bench),
     *(studies.add_sweep, studies.add_summarise, studies.add_report, studies.add_tune),
     *(clips.add_import, clips.add_author, clips.add_preview),

@@ -367,7 +367,7 @@ def test_inspect_shows_everything_and_checks_it(cli, made):
     out, row, log = made
     code, stdout, stderr = cli("inspect", log)
     assert (code, stderr) == (0, "")
-    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 3\n")
+    assert stdout.startswith(f"{log}  run {row['run_id']}  schema 4\n")
     for text in ("trajectory/qpos", "[kg m2/s]", "outcome", "success", "git_commit", "machine"):
         assert text in stdout
     assert stdout.endswith("\nintegrity  complete, checksums match\n")

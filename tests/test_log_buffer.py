@@ -7,6 +7,7 @@ import pytest
 
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, TrajectoryBuffer
+from rotctl.log.schema import CONSTANTS
 
 SIZES = {"steps": 7, "nq": 5, "nv": 4, "nu": 3, "capacity": 2, "tasks": 2, "bodies": 2}
 
@@ -17,9 +18,7 @@ def test_every_array_has_the_schema_s_type_and_shape():
     for name, array in arrays.items():
         spec = SCHEMA[name]
         assert array.dtype == np.dtype(spec.dtype)
-        assert array.shape == tuple(
-            dim if isinstance(dim, int) else {**SIZES, "events": 0}[dim] for dim in spec.shape
-        )
+        assert array.shape == tuple({**CONSTANTS, **SIZES, "events": 0}[dim] for dim in spec.shape)
 
 
 def test_a_slash_in_the_schema_is_a_dot_in_the_buffer():

@@ -6,6 +6,7 @@ import pytest
 from rotctl.errors import LogError
 from rotctl.log.schema import (
     ATTRIBUTES,
+    CONSTANTS,
     GROUPS,
     MODEL_PATH,
     SCHEMA,
@@ -20,7 +21,7 @@ def layout(**changes):
     good = {
         name: (
             np.dtype(spec.dtype if spec.dtype != "S" else "S9"),
-            tuple(dim if isinstance(dim, int) else SIZES[dim] for dim in spec.shape),
+            tuple({**CONSTANTS, **SIZES}[dim] for dim in spec.shape),
         )
         for name, spec in SCHEMA.items()
     }

@@ -119,6 +119,32 @@ def plot(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def add_export(commands: Commands) -> None:
+    """Add `export`."""
+    command = commands.add_parser(
+        "export",
+        help="write a logged run for other programs",
+        description="Write a run as motion capture (BVH), as the tables that motion trackers read "
+        "(CSV, npz), as an animated scene for any viewer (binary glTF), or its model for other "
+        "simulators (MJCF). Nothing is simulated again.",
+    )
+    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument(
+        "--to", required=True, choices=("bvh", "csv", "npz", "gltf", "mjcf"), help="the format"
+    )
+    command.add_argument("--out", type=Path, metavar="FILE", help="where to [beside the log]")
+    command.set_defaults(command=export, interrupted="an unfinished file is not written")
+
+
+def export(arguments: argparse.Namespace) -> int:
+    """Write a log in another format."""
+    from rotctl.export import export
+    from rotctl.log import RunLog
+
+    print(export(RunLog.open(log_file(arguments.log)), arguments.to, arguments.out))
+    return 0
+
+
 def add_inspect(commands: Commands) -> None:
     """Add `inspect`."""
     command = commands.add_parser(

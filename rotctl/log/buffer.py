@@ -25,7 +25,7 @@ from rotctl.log.rows import (
     TrajectoryRows,
     members,
 )
-from rotctl.log.schema import EVENT_BYTES, MAX_TOTAL_BYTES, SCHEMA, DatasetSpec
+from rotctl.log.schema import CONSTANTS, EVENT_BYTES, MAX_TOTAL_BYTES, SCHEMA, DatasetSpec
 
 _ALLOCATED = {
     name: spec for name, spec in SCHEMA.items() if spec.shape and "events" not in spec.shape
@@ -144,7 +144,7 @@ def _allocate(spec: DatasetSpec, sizes: dict[str, int]) -> NDArray[Any]:
 
 
 def _shape(spec: DatasetSpec, sizes: dict[str, int]) -> list[int]:
-    return [dim if isinstance(dim, int) else sizes[dim] for dim in spec.shape]
+    return [CONSTANTS[dim] if dim in CONSTANTS else sizes[dim] for dim in spec.shape]
 
 
 def _from_arrays(

@@ -27,7 +27,8 @@ def simulated(arrays: Mapping[str, NDArray[Any]]) -> "Hash":
     digest = sha256()
     for name in filter(arrays.__contains__, SCHEMA):
         array = arrays[name]
-        digest.update(f"{name} {array.dtype.str} {array.shape}\n".encode())
+        kind = np.dtype(bool).str if SCHEMA[name].dtype == "?" else array.dtype.str  # not as stored
+        digest.update(f"{name} {kind} {array.shape}\n".encode())
         for block in _blocks(array):
             digest.update(block.tobytes())
     return digest

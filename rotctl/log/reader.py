@@ -1,6 +1,6 @@
 """A log file -> its arrays, checked before anything is read."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,8 +31,8 @@ def read_attributes(path: str | Path, *, linked: bool) -> dict[str, bool | int |
 
 
 @dataclass(frozen=True)
-class RunLog:
-    """One checked log. The file is opened for each read, never held.
+class RunLog(Mapping[str, NDArray[Any]]):
+    """One checked log: a mapping of names to arrays. The file is opened for each read, never held.
 
     Attributes:
         path: the file.
@@ -79,6 +79,18 @@ class RunLog:
     def __contains__(self, name: object) -> bool:
         """Whether there is such a dataset; logs of older schema versions have fewer."""
         return name in self.names
+
+    def __iter__(self) -> Iterator[str]:
+        """The names of its datasets."""
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        """How many datasets it has."""
+        return len(self.names)
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A dataset, or something else where there is none of that name."""
+        return self[name] if name in self else default  # noqa: SIM401 (this is get)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -155,7 +167,8 @@ class RunLog:
         return whole.hexdigest()
 
     def _read(self, file: h5py.File, name: str) -> NDArray[Any]:
-        return np.asarray(self._checked(file, name)[()])
+        found = np.asarray(self._checked(file, name)[()])
+        return found.astype(bool) if SCHEMA[name].dtype == "?" else found
 
     def _checked(self, file: h5py.File, name: str) -> h5py.Dataset:
         dataset = untrusted.dataset(file, *name.split("/"))

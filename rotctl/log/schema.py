@@ -13,13 +13,15 @@ import numpy as np
 
 from rotctl.errors import LogError
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 OLDEST_READ = 2
 
 MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
 MAX_MODEL_BYTES = 16 * 2**20
 MAX_TOTAL_BYTES = 2 * 2**30
+# Dimensions of a size that is always the same; what is along them is `LABELS`.
+CONSTANTS = {"xyz": 3, "axis": 3, "row": 3, "part": 4, "force_moment": 6}
 LOG_NAME = "run.h5"  # in a folder that the run id names
 
 
@@ -29,7 +31,7 @@ class DatasetSpec:
 
     Attributes:
         dtype: NumPy type string; plain ``"S"`` stands for bytes of any one fixed length.
-        shape: dimensions, each a number or one of ``steps``, ``nq``, ``nv``, ``nu``,
+        shape: dimensions, each of `CONSTANTS` or one of ``steps``, ``nq``, ``nv``, ``nu``,
             ``capacity``, ``events``, ``tasks``, ``bodies``.
         unit: SI unit; ``"1"`` where there is none.
         description: one line for the reader of the file.
@@ -38,24 +40,22 @@ class DatasetSpec:
     """
 
     dtype: str
-    shape: tuple[str | int, ...]
+    shape: tuple[str, ...]
     unit: str
     description: str
     fill: int = 0
     since: int = OLDEST_READ
 
 
-def _per_step(
-    unit: str, description: str, *row: str | int, since: int = OLDEST_READ
-) -> DatasetSpec:
+def _per_step(unit: str, description: str, *row: str, since: int = OLDEST_READ) -> DatasetSpec:
     return DatasetSpec("<f8", ("steps", *row), unit, description, since=since)
 
 
 def _per_contact(unit: str, description: str) -> DatasetSpec:
-    return DatasetSpec("<f4", ("steps", "capacity", 3), unit, description)
+    return DatasetSpec("<f4", ("steps", "capacity", "xyz"), unit, description)
 
 
-def _per_task(unit: str, description: str, *row: int) -> DatasetSpec:
+def _per_task(unit: str, description: str, *row: str) -> DatasetSpec:
     return DatasetSpec("<f8", ("steps", "tasks", *row), unit, description, since=3)
 
 
@@ -66,49 +66,59 @@ SCHEMA: dict[str, DatasetSpec] = {
     "trajectory/qpos": _per_step("m, rad, quaternion", "generalised positions, MuJoCo order", "nq"),
     "trajectory/qvel": _per_step("m/s, rad/s", "generalised velocities, MuJoCo order", "nv"),
     "trajectory/ctrl": _per_step("N m", "joint torques held from this row's time on", "nu"),
-    "trajectory/com": _per_step("m", "centre of mass", 3),
+    "trajectory/com": _per_step("m", "centre of mass", "xyz"),
     "trajectory/ground_height": _per_step(
         "m", "height of the ground below the centre of mass", since=3
     ),
-    "trajectory/com_velocity": _per_step("m/s", "velocity of the centre of mass", 3),
-    "trajectory/linear_momentum": _per_step("kg m/s", "linear momentum L", 3),
+    "trajectory/com_velocity": _per_step("m/s", "velocity of the centre of mass", "xyz"),
+    "trajectory/linear_momentum": _per_step("kg m/s", "linear momentum L", "xyz"),
     "trajectory/angular_momentum": _per_step(
-        "kg m2/s", "angular momentum H about the centre of mass", 3
+        "kg m2/s", "angular momentum H about the centre of mass", "xyz"
     ),
     "trajectory/angular_velocity": _per_step(
-        "rad/s", "whole-body angular velocity, I_c^-1 H with I_c the composite inertia", 3
+        "rad/s", "whole-body angular velocity, I_c^-1 H with I_c the composite inertia", "xyz"
     ),
     "trajectory/angular_excursion": _per_step(
-        "rad", "angular excursion: integral of the whole-body angular velocity", 3
+        "rad", "angular excursion: integral of the whole-body angular velocity", "xyz"
     ),
-    "trajectory/linear_momentum_rate_desired": _per_step("N", "rate of L that was asked for", 3),
+    "trajectory/linear_momentum_rate_desired": _per_step(
+        "N", "rate of L that was asked for", "xyz"
+    ),
     "trajectory/linear_momentum_rate_predicted": _per_step(
-        "N", "rate of L that the controller's solution predicts", 3
+        "N", "rate of L that the controller's solution predicts", "xyz"
     ),
-    "trajectory/angular_momentum_rate_desired": _per_step("N m", "rate of H that was asked for", 3),
+    "trajectory/angular_momentum_rate_desired": _per_step(
+        "N m", "rate of H that was asked for", "xyz"
+    ),
     "trajectory/angular_momentum_rate_predicted": _per_step(
-        "N m", "rate of H that the controller's solution predicts", 3
+        "N m", "rate of H that the controller's solution predicts", "xyz"
     ),
     "trajectory/blend": _per_step("1", "weight between the torques of the two pose objectives"),
     "trajectory/phase": _per_step("rad", "phase angle of the behaviour"),
-    "trajectory/trunk_axis": _per_step("1", "the trunk's mean axis that it rolls about, unit", 3),
+    "trajectory/trunk_axis": _per_step(
+        "1", "the trunk's mean axis that it rolls about, unit", "xyz"
+    ),
     "trajectory/trunk_axes": _per_step(
-        "1", "the trunk's mean front, left and up as columns, each unit, world", 3, 3, since=3
+        "1",
+        "the trunk's mean front, left and up as columns, each unit, world",
+        "xyz",
+        "axis",
+        since=3,
     ),
     "command/axes": _per_step(
-        "1", "the behaviour's forward, left and up as rows, world", 3, 3, since=3
+        "1", "the behaviour's forward, left and up as rows, world", "axis", "xyz", since=3
     ),
     "command/stage": DatasetSpec(
         "<i4", ("steps",), "1", "number of the behaviour's stage", since=3
     ),
-    "command/target": _per_task("m, rad", "of each task, see its kind; world axes", 4),
-    "command/velocity": _per_task("m/s, rad/s", "that each task asks for; world axes", 3),
-    "command/error": _per_task("m, rad", "to the target, along the task's axes", 3),
+    "command/target": _per_task("m, rad", "of each task, see its kind; world axes", "part"),
+    "command/velocity": _per_task("m/s, rad/s", "that each task asks for; world axes", "xyz"),
+    "command/error": _per_task("m, rad", "to the target, along the task's axes", "row"),
     "command/wanted": _per_task(
-        "N, N m, m/s2, rad/s2", "what the task's rows should give, along its axes", 3
+        "N, N m, m/s2, rad/s2", "what the task's rows should give, along its axes", "row"
     ),
     "command/predicted": _per_task(
-        "N, N m, m/s2, rad/s2", "what the controller's solution gives them", 3
+        "N, N m, m/s2, rad/s2", "what the controller's solution gives them", "row"
     ),
     "contacts/count": DatasetSpec(
         "<i4", ("steps",), "1", "contacts that the controller saw; may exceed the recorded capacity"
@@ -132,7 +142,10 @@ SCHEMA: dict[str, DatasetSpec] = {
     ),
     "contacts/used": DatasetSpec("?", _SLOTS, "1", "contact kept by the supervisor"),
     "contacts/ground_force": _per_step(
-        "N", "mean over the control step of the ground's whole force on the character", 3, since=3
+        "N",
+        "mean over the control step of the ground's whole force on the character",
+        "xyz",
+        since=3,
     ),
     "contacts/ground_force_peak": _per_step(
         "N", "largest whole ground force in a physics step of the control step", since=3
@@ -141,7 +154,7 @@ SCHEMA: dict[str, DatasetSpec] = {
         "m", "deepest overlap with the ground in a physics step of the control step", since=3
     ),
     "disturbance/wrench": _per_step(
-        "N, N m", "force and moment from outside about the centre of mass", 6, since=3
+        "N, N m", "force and moment from outside about the centre of mass", "force_moment", since=3
     ),
     "solver/status": DatasetSpec(
         "i1",
@@ -203,6 +216,8 @@ def check_dataset(
     """
     spec = SCHEMA[name]
     expected = np.dtype(spec.dtype)
+    if expected.kind == "b" and dtype == np.uint8:  # as it is stored; up to schema 3 as an enum
+        dtype = expected
     any_length = expected.itemsize == 0 and dtype.kind == expected.kind
     if dtype != expected and not any_length:
         raise LogError(f"{name} has type {dtype}, expected {expected.name}")
@@ -210,11 +225,11 @@ def check_dataset(
         raise LogError(f"{name} has shape {shape}, expected {_shape_text(spec)}")
     bound = dict(sizes)
     for dim, size in zip(spec.shape, shape, strict=True):
-        wanted = dim if isinstance(dim, int) else bound.setdefault(dim, size)
+        wanted = CONSTANTS[dim] if dim in CONSTANTS else bound.setdefault(dim, size)
         if size != wanted:
             raise LogError(
                 f"{name} has shape {shape}, expected {_shape_text(spec)}"
-                + ("" if isinstance(dim, int) else f" with {dim} = {wanted}")
+                + ("" if dim in CONSTANTS else f" with {dim} = {wanted}")
             )
     return bound
 
@@ -260,4 +275,4 @@ def check_layout(
 
 
 def _shape_text(spec: DatasetSpec) -> str:
-    return "(" + ", ".join(map(str, spec.shape)) + ")"
+    return "(" + ", ".join(str(CONSTANTS.get(dim, dim)) for dim in spec.shape) + ")"

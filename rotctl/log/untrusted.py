@@ -16,6 +16,7 @@ import numpy as np
 from rotctl import files
 from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
+from rotctl.log import scales
 from rotctl.log.schema import ATTRIBUTES, GROUPS, OLDEST_READ, SCHEMA_VERSION
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
@@ -70,7 +71,7 @@ def root_attributes(file: h5py.File) -> dict[str, bool | int | float | str]:
         raise LogError(
             f"schema version {version}, this rotctl reads {OLDEST_READ} to {SCHEMA_VERSION}"
         )
-    if "complete" not in file.attrs or attribute(file, "complete") is not True:
+    if "complete" not in file.attrs or _truth(attribute(file, "complete")) is not True:
         raise LogError("incomplete, the run was cut off while it was written")
     for name in file.attrs:
         if name not in ATTRIBUTES:
@@ -79,10 +80,16 @@ def root_attributes(file: h5py.File) -> dict[str, bool | int | float | str]:
     for name, kind in ATTRIBUTES.items():
         if name not in file.attrs:
             raise LogError(f"missing attribute {name!r}")
-        attributes[name] = attribute(file, name)
+        found = attribute(file, name)
+        attributes[name] = _truth(found) if kind is bool else found
         if type(attributes[name]) is not kind:
             raise LogError(f"attribute {name!r} is not of type {kind.__name__}")
     return attributes
+
+
+def _truth(value: bool | int | float | str) -> bool | int | float | str:
+    """A truth value that is stored as 0 or 1."""
+    return bool(value) if type(value) is int and value in (0, 1) else value
 
 
 def attribute(owner: h5py.Group | h5py.Dataset, name: str) -> bool | int | float | str:
@@ -112,6 +119,8 @@ def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
     found = {}
     for group_name in file:
         group = _child(file, group_name)
+        if group_name in scales.NAMES and isinstance(group, h5py.Dataset):
+            continue  # never read: it says again what is in a group
         if group_name not in GROUPS or not isinstance(group, h5py.Group):
             raise LogError(f"unknown object {group_name!r}")
         for name in group:

@@ -19,6 +19,7 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.digest import content_sha256, simulated
+from rotctl.log.scales import write_scales
 from rotctl.log.schema import (
     ATTRIBUTES,
     GROUPS,
@@ -103,7 +104,7 @@ def encode_run(
         InputError: an array, an attribute or the model does not fit the schema.
     """
     arrays = whole(run, model_xml)
-    check_layout({name: (array.dtype, array.shape) for name, array in arrays.items()})
+    sizes = check_layout({name: (array.dtype, array.shape) for name, array in arrays.items()})
     root = _root_attributes(attributes)
     root["content_sha256"] = content_sha256(digest or simulated(arrays), root)
 
@@ -113,15 +114,17 @@ def encode_run(
         for name in SCHEMA:
             group, _, leaf = name.partition("/")
             _write_dataset(groups[group], leaf, SCHEMA[name], arrays[name])
-        for name, value in root.items():
-            file.attrs[name] = value
-        file.attrs["complete"] = True
+        write_scales(file, arrays, sizes)
+        for name, value in {**root, "complete": True}.items():
+            file.attrs[name] = np.uint8(value) if isinstance(value, bool) else value
     return memory.getvalue()
 
 
 def _write_dataset(group: h5py.Group, name: str, spec: DatasetSpec, array: NDArray[Any]) -> None:
-    if array.dtype.kind == "S":
+    if array.dtype.kind == "S" and not array.tobytes().isascii():
         array = array.astype(h5py.string_dtype("utf-8", array.dtype.itemsize))
+    if array.dtype == bool:  # HDF5 has none, and few know h5py's enum
+        array = array.view(np.uint8)
     dataset = group.create_dataset(name, data=array, track_times=False, **_storage(array))
     _write_text(dataset, "units", spec.unit)
     _write_text(dataset, "description", spec.description)
