@@ -115,7 +115,7 @@ def test_the_longest_flight_is_found():
     contacts = np.array([1] * 5 + [0] * 3 + [2] * 4 + [0] * 7 + [1] * 6)
     log = a_log(np.zeros(25), contacts)
     assert longest_flight(log) == (12, 19)
-    assert measure(log, PERIOD).flight_time == pytest.approx(7 * PERIOD)
+    assert measure(log, FLIP, PERIOD).flight_time == pytest.approx(7 * PERIOD)
 
 
 def test_reasons():
@@ -131,4 +131,4 @@ def test_reasons():
 
 def test_no_rows_are_no_numbers():
     empty = a_log(np.zeros(0), np.zeros(0, int))
-    assert np.isnan(measure(empty, PERIOD).revolved)
+    assert np.isnan(measure(empty, FLIP, PERIOD).revolved)

@@ -19,7 +19,7 @@ from rotctl.control.task import Tasks
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model
 from rotctl.rotations import about_up, advance, advanced, dot, rotation_between
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -81,6 +81,27 @@ class Bow:
         forward, left, _ = scene.axes
         facing = about_up(atan2(float(forward[1]), float(forward[0])))
         task["target"] = advance(facing, radians(self.angle) * left)
+
+
+@validated(frozen=True, config=STRICT)
+class Face:
+    """A body is upright and faces where a turn about up has brought it: attitude.
+
+    Attributes:
+        share: of the behaviour's target [-].
+    """
+
+    law: Literal["face"]
+    share: Fraction
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        forward = scene.axes[0]
+        turned = self.share * scene.target
+        task["target"] = about_up(atan2(float(forward[1]), float(forward[0])) + turned)
 
 
 @validated(frozen=True, config=STRICT)
@@ -157,7 +178,7 @@ class Ground:
 
 @validated(frozen=True, config=STRICT)
 class Turn:
-    """Turn to the behaviour's target excursion about left, and keep to that axis: spin.
+    """Turn to the behaviour's target excursion, and keep to its axis: spin.
 
     Attributes:
         most: of what is missing, that the spring is given at once [rad].
@@ -171,11 +192,11 @@ class Turn:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
-        left = scene.axes[1]
+        about = scene.turning
         missing = scene.target - scene.turned
         across = _missing(scene, scene.first.angle)
         task["target"][:3] = (
-            across - dot(left, across) * left + min(max(missing, -self.most), self.most) * left
+            across - dot(about, across) * about + min(max(missing, -self.most), self.most) * about
         )
 
 
@@ -183,6 +204,7 @@ Aim = Annotated[
     Hold
     | Upright
     | Bow
+    | Face
     | Plane
     | Watch
     | Pose
@@ -208,6 +230,7 @@ SERVES: dict[type, tuple[str, ...]] = {
     Stepping: ("point",),
     Heading: ("attitude",),
     Bow: ("attitude",),
+    Face: ("attitude",),
     Plane: ("attitude",),
     Watch: ("point",),
     Pose: ("joints",),
@@ -219,4 +242,4 @@ SERVES: dict[type, tuple[str, ...]] = {
 
 
 def _missing(scene: Scene, angle: np.ndarray) -> np.ndarray:
-    return excursion.error(scene.excursion, angle, scene.axes[1], scene.measure)
+    return excursion.error(scene.excursion, angle, scene.turning, scene.measure)

@@ -1,7 +1,8 @@
-"""Which of the trunk's axes lies on the axis that a behaviour turns about, and its heading."""
+"""Which axis a behaviour turns about, which of the trunk's axes lies on it, and its heading."""
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -9,6 +10,8 @@ from rotctl.motion import RollAbout
 from rotctl.rotations import Array, about_up, crossed, multiply, rotate
 
 UP = np.array([0.0, 0.0, 1.0])
+
+TurnAbout = Literal["left", "up"]
 
 
 @dataclass(frozen=True)
@@ -37,12 +40,16 @@ class Frame:
 
     Attributes:
         axes: (3, 3) rows are forward, left and up.
+        turning: (3,) the one of them that it turns about.
+        trunk_axis: (3,) the trunk's that lies along it, unit, in the trunk's frame.
         orientation: (4,) of the trunk at phase 0, unit quaternion.
         front: (3,) the trunk's front there.
-        column, sign: which of the trunk's front, left and up lies along left, or against it.
+        column, sign: which of the trunk's front, left and up that is, and whether against it.
     """
 
     axes: Array
+    turning: Array
+    trunk_axis: Array
     orientation: Array
     front: Array
     column: int
@@ -53,21 +60,31 @@ class Frame:
         return trunk_axes[:, self.column] * self.sign
 
     def turned(self, trunk_axes: Array) -> float:
-        """How far its front has turned about left from phase 0 [rad], within a revolution."""
+        """How far its front has turned from phase 0 [rad], within a revolution."""
         (x, y, z), now = self.front.tolist(), trunk_axes[:, 0].tolist()
-        across, left = crossed((x, y, z), now), self.axes[1].tolist()
-        sine = left[0] * across[0] + left[1] * across[1] + left[2] * across[2]
+        across, about = crossed((x, y, z), now), self.turning.tolist()
+        sine = about[0] * across[0] + about[1] * across[1] + about[2] * across[2]
         return math.atan2(sine, x * now[0] + y * now[1] + z * now[2])
 
 
-def frame_of(about: RollAbout, heading: float) -> Frame:
-    """The frame of a behaviour that turns about one of the trunk's axes; `heading` in [deg]."""
+def frame_of(about: RollAbout, heading: float, turn_about: TurnAbout = "left") -> Frame:
+    """The frame of a behaviour.
+
+    Args:
+        about: the trunk's axis that lies to the left.
+        heading: of forward, from +x towards +y [deg].
+        turn_about: what it turns about; about up it stands, its left to the left.
+    """
     facing, turn = FACING[about], about_up(math.radians(heading))
     orientation = multiply(turn, facing.orientation)
+    axes = np.array([rotate(turn, axis) for axis in np.eye(3)])
+    axis = facing.trunk_axis if turn_about == "left" else UP
     return Frame(
-        axes=np.array([rotate(turn, axis) for axis in np.eye(3)]),
+        axes=axes,
+        turning=axes[1 if turn_about == "left" else 2],
+        trunk_axis=axis,
         orientation=orientation,
         front=rotate(orientation, np.array([1.0, 0.0, 0.0])),
-        column=int(np.abs(facing.trunk_axis).argmax()),
-        sign=float(facing.trunk_axis.sum()),
+        column=int(np.abs(axis).argmax()),
+        sign=float(axis.sum()),
     )

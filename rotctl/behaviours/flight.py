@@ -19,14 +19,15 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.landing import Contact, Landing, LandingSettings
 from rotctl.behaviours.scene import Scene
 from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
 from rotctl.motion import Turn, make_pose
-from rotctl.rotations import Array, dot, quaternion_from_rotation_vector
-from rotctl.settings import STRICT, Finite, Fraction, Positive
+from rotctl.rotations import Array, crossed, dot, quaternion_from_rotation_vector
+from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
@@ -66,6 +67,7 @@ class FlightSettings:
             shapes, takes so long [s].
         entry: how it lands, if always alike;
         feet: if on its feet, as its motion then asks for.
+        coasting: what landed turns on as if with its last speed for so long [s].
     """
 
     tuck: dict[str, Turn]
@@ -76,6 +78,7 @@ class FlightSettings:
     longest: Fraction = 1.0
     entry: EntrySettings | None = None
     feet: LandingSettings | None = None
+    coasting: NonNegative = 0.0
 
     def __post_init__(self) -> None:
         if (self.entry is None) == (self.feet is None):
@@ -105,20 +108,22 @@ class Flight:
     """The regulator of one run's flight."""
 
     def __init__(
-        self, settings: FlightSettings, model: Model, axis: Array, target: float, key: str
+        self, settings: FlightSettings, model: Model, frame: Frame, target: float, key: str
     ) -> None:
         """Tabulate inertia over the shapes.
 
         Args:
-            axis: (3,) of the pelvis that it turns about, unit, in the pelvis's frame.
+            frame: of the behaviour.
             target: to turn [rad]; its sign is the sense.
             key: where the settings stand.
 
         Raises:
             InputError: a joint or a body is not there.
         """
-        self._settings, self._model, self._axis = settings, model, axis
+        self._settings, self._model, self._frame = settings, model, frame
+        self._axis = axis = frame.trunk_axis
         self._target, self._sense = target, 1.0 if target >= 0.0 else -1.0
+        self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
         self._tuck = make_pose(model, settings.tuck, f"{key}.tuck")
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
         self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
@@ -174,21 +179,27 @@ class Flight:
         return max((up + sqrt(up * up + 2.0 * fall * higher)) / fall, LEAST_TIME)
 
     def turned(self, scene: Scene) -> float:
-        """theta: how far the pelvis has turned about left from upright [rad]."""
-        front = scene.state.momentum.root_rotation[:, 0]
-        forward, _, up = scene.axes
-        angle = atan2(-dot(front, up), dot(front, forward))
+        """theta: how far the pelvis has turned from upright [rad]."""
+        front, forward = scene.state.momentum.root_rotation[:, 0], scene.axes[0]
+        aside = np.array(crossed(scene.turning.tolist(), forward.tolist()))
+        angle = atan2(dot(front, aside), dot(front, forward))
         drift = (angle - scene.excursion.phase + pi) % tau - pi
         return scene.excursion.phase + drift
 
-    def left_to_turn(self, scene: Scene, contact: Contact) -> float:
-        """In the sense of the flight, beside what the change of shape does [rad]."""
+    def left_to_turn(self, scene: Scene, contact: Contact, momentum: float) -> float:
+        """In the sense of the flight, beside what the change of shape does [rad].
+
+        Args:
+            momentum: in that sense [kg m2/s]; omega_land = |H| / I_land, [AlBorno2014].
+        """
         angles = scene.state.position[self._model.angles]
         shape = self._shapes.turn(angles, contact.pose, self._axis)
-        return self._sense * (self._target + contact.attitude - self.turned(scene) - shape)
+        goal = self._target + (contact.attitude if self._pitches else 0.0)
+        coasts = momentum * self._settings.coasting * float(self._slowness[len(AMOUNTS) // 2])
+        return self._sense * (goal - self.turned(scene) - shape) - coasts
 
     def planned(self, scene: Scene, amount: float, forward: float, up: float, high: float) -> float:
-        """Momentum about left with which an average tuck turns what is left [kg m2/s].
+        """Momentum with which an average tuck turns what is left [kg m2/s].
 
         Args:
             amount: of tuck, on average.
@@ -198,10 +209,11 @@ class Flight:
         x, y = (scene.state.momentum.com + forward * up / GRAVITY * scene.axes[0])[:2].tolist()
         over, momentum = high + scene.floor - scene.model.ground.height(x, y), 0.0
         for _ in range(2):  # how it lands depends on its momentum, too
-            contact = self.contact(momentum, forward, up, over)
+            contact = self.contact(momentum if self._pitches else 0.0, forward, up, over)
             time = self.time(up, over, contact)
             slowness = self.mean_slowness(amount, 0.0, time)
-            momentum = self._sense * self.left_to_turn(scene, contact) / (time * slowness)
+            along = self._sense * momentum
+            momentum = self._sense * self.left_to_turn(scene, contact, along) / (time * slowness)
         return momentum
 
     def mean_slowness(self, amount: float, now: float, time: float) -> float:
@@ -229,13 +241,13 @@ class Flight:
             return self.begin(scene.state)
         momentum, (ahead, left, _) = scene.state.momentum, scene.axes
         x, y, z = momentum.com.tolist()
-        turning, up = dot(momentum.angular, left), float(momentum.com_velocity[2])
+        up, pitching = float(momentum.com_velocity[2]), dot(momentum.angular, left)
         over = z - scene.model.ground.height(x, y)
-        contact = self.contact(turning, dot(momentum.com_velocity, ahead), up, over)
+        contact = self.contact(pitching, dot(momentum.com_velocity, ahead), up, over)
         time = self.time(up, over, contact)
         late = time < 0.5 * settings.change  # too late for another shape to turn much
-        need = 0.0 if late else self.left_to_turn(scene, contact)
-        turning *= self._sense
+        turning = self._sense * dot(momentum.angular, scene.turning)
+        need = 0.0 if late else self.left_to_turn(scene, contact, turning)
         held = before.held if late else self._amount(need, turning, before.amount, time)
         wanted = held * _smooth(min(time / settings.opening, 1.0))
         amount, rate = self._towards(wanted, before, period)

@@ -134,7 +134,7 @@ class Whirl:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
-        momentum, left = scene.state.momentum, scene.axes[1]
+        momentum, about = scene.state.momentum, scene.turning
         launch = scene.aims.get(self.task)
         flight = scene.laws.get(self.flight)
         if not isinstance(launch, Launch):
@@ -142,9 +142,9 @@ class Whirl:
         if not isinstance(flight, Flight):
             raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
         wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
-        along = dot(momentum.angular, left)
-        rate = -self.calm * (momentum.angular - along * left)
-        rate += (wanted - along) / launch.left(scene) * left
+        along = dot(momentum.angular, about)
+        rate = -self.calm * (momentum.angular - along * about)
+        rate += (wanted - along) / launch.left(scene) * about
         task["acceleration"] = solve(momentum.inertia, rate)
 
 

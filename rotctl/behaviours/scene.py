@@ -48,6 +48,7 @@ class Scene:
     Attributes:
         state: that the controller sees.
         axes: (3, 3) rows are the behaviour's forward, left and up, world.
+        turning: (3,) the one of them that the behaviour turns about.
         excursion: AE and phase now, measured by `measure`.
         begin: of the stage.
         first: AE and phase at the start of the run.
@@ -64,6 +65,7 @@ class Scene:
     model: Model
     state: State
     axes: Array
+    turning: Array
     excursion: Excursion
     measure: ExcursionName
     begin: Begin

@@ -2,7 +2,7 @@
 
 A stage has poses, tasks with aims, and a condition that ends it; see `rotctl.behaviours.aims` and
 `rotctl.behaviours.until`. The last stage goes on. Everything is measured along the behaviour's
-forward, left and up; the phase is the excursion about left, [AlBorno2014].
+forward, left and up; the phase is the excursion about left, [AlBorno2014], or about up.
 """
 
 import math
@@ -22,11 +22,11 @@ from rotctl.behaviours.behaviour import (
     gains_of,
     pose_gains_of,
 )
-from rotctl.behaviours.facing import FACING, frame_of
+from rotctl.behaviours.facing import TurnAbout, frame_of
 from rotctl.behaviours.flight import Aloft, Flight
 from rotctl.behaviours.posing import OverPhase, PoseLaw
 from rotctl.behaviours.scene import Begin, Scene, Step
-from rotctl.behaviours.stages import Stage, TaskSettings
+from rotctl.behaviours.stages import Stage, TaskSettings, mirrored
 from rotctl.behaviours.stepping import Stepping
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
@@ -51,7 +51,8 @@ class StagedSettings:
         roll_about: the trunk's axis that lies to the left.
         heading: of forward, from +x towards +y [deg].
         tasks: of every stage, by name; the controller has gains under the same names.
-        target_excursion: how far to turn about left [deg].
+        target_excursion: how far to turn [deg], about
+        turn_about: left, or up; poses are of a turn to the left, and mirrored for one to the right.
     """
 
     name: str
@@ -61,10 +62,13 @@ class StagedSettings:
     stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     target_excursion: Finite = 0.0
+    turn_about: TurnAbout = "left"
     source: str = ""
     description: str = ""
 
     def __post_init__(self) -> None:
+        if self.turn_about == "up" and self.roll_about != "left":
+            raise ValueError(f"turn_about up needs roll_about left, not {self.roll_about}")
         if self.stages[0].poses is None:
             raise ValueError("the first stage must have poses: a run starts in them")
         for stage in self.stages[:-1]:
@@ -142,20 +146,22 @@ class Staged:
         """
         self._settings, self._model, self._control = settings, model, control
         self._measured, self._period = measured, 1.0 / control.rate
-        self._frame = frame_of(settings.roll_about, settings.heading)
+        self._frame = frame_of(settings.roll_about, settings.heading, settings.turn_about)
         self.axes = self._frame.axes
         self._target = math.radians(settings.target_excursion)
+        right = settings.turn_about == "up" and self._target < 0.0
+        self._stages = tuple(mirrored(s, model) if right else s for s in settings.stages)
         found: dict[str, None] = {}
-        for stage in settings.stages:
+        for stage in self._stages:
             for name, wanted in (settings.tasks | stage.tasks).items():
                 found.update(dict.fromkeys(_names(model, name, wanted)))
             if stage.until:
                 stage.until.check(model)
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
-        self._parts = [self._part(stage) for stage in settings.stages]
-        self._poses = [self._law(stage) for stage in settings.stages]
-        self._laws = {s.name: law for s, law in zip(settings.stages, self._poses, strict=True)}
+        self._parts = [self._part(stage) for stage in self._stages]
+        self._poses = [self._law(stage) for stage in self._stages]
+        self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
 
     def _part(self, stage: Stage) -> _Part:
         model = self._model
@@ -188,32 +194,32 @@ class Staged:
     def _law(self, stage: Stage) -> PoseLaw:
         key = f"behaviour.stages.{stage.name}"
         if stage.flight:
-            axis = FACING[self._settings.roll_about].trunk_axis
-            return Flight(stage.flight, self._model, axis, self._target, f"{key}.flight")
+            frame = self._frame
+            return Flight(stage.flight, self._model, frame, self._target, f"{key}.flight")
         if stage.rise:
             return stage.rise.make(self._model, f"{key}.rise")
         assert stage.poses  # one of the three is there
         return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:
-        """How a run starts at a pitch [rad] about left."""
-        tilt, first = pitch * self.axes[1], self._poses[0]
+        """How a run starts at a pitch [rad] about what it turns about."""
+        tilt, first = pitch * self._frame.turning, self._poses[0]
         assert isinstance(first, OverPhase)  # as the settings ask for
         return Placement(advance(self._frame.orientation, tilt), first.pair.start(pitch))
 
     def begin(self, pitch: float, state: State) -> StagedMemory:
         """Memory at the start."""
-        first = excursion.start(pitch, self.axes[1])
+        first = excursion.start(pitch, self._frame.turning)
         return StagedMemory(0, _begin(state, first), first, first)
 
     def advance(self, before: StagedMemory, state: State) -> StagedMemory:
         """Memory now, and the next stage where the present one's condition is met."""
-        left, measured = self.axes[1], self._measured
+        measured = self._measured
         now = excursion.integrate(
             before.excursion,
             state.momentum.angular_velocity,
             self._axis(state),
-            left,
+            self._frame.turning,
             self._period,
             measured.correction_time,
         )
@@ -229,7 +235,7 @@ class Staged:
         stepping = self._parts[memory.stage].stepping
         step = stepping.next(self._scene(memory, state)) if stepping else Step()
         memory = replace(memory, step=step)
-        until = self._settings.stages[memory.stage].until
+        until = self._stages[memory.stage].until
         last = memory.stage + 1 == len(self._parts)
         if not last and until is not None and until.met(self._scene(memory, state)):
             memory = replace(memory, stage=memory.stage + 1, begin=_begin(state, now), aloft=None)
@@ -239,7 +245,7 @@ class Staged:
 
     def command(self, memory: StagedMemory, state: State) -> Command:
         """What the present stage wants at this instant."""
-        part, stage = self._parts[memory.stage], self._settings.stages[memory.stage]
+        part, stage = self._parts[memory.stage], self._stages[memory.stage]
         scene = self._scene(memory, state)
         poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
         scene = replace(scene, pose=poses[0], speed=speeds[0])
@@ -272,6 +278,7 @@ class Staged:
             model=self._model,
             state=state,
             axes=self.axes,
+            turning=self._frame.turning,
             excursion=memory.excursion,
             measure=self._measured.measure,
             begin=memory.begin,
@@ -288,7 +295,7 @@ class Staged:
         )
 
     def _axis(self, state: State) -> Array:
-        """The trunk's axis (3,) that should stay to the left, unit, world."""
+        """The trunk's axis (3,) that should stay where it turns about, unit, world."""
         return self._frame.axis(state.trunk_axes)
 
 

@@ -1,6 +1,7 @@
 """What a stage of a behaviour says: its tasks with their aims, its poses, and what ends it."""
 
-from dataclasses import field
+from collections.abc import Mapping
+from dataclasses import field, replace
 
 from pydantic.dataclasses import dataclass as validated
 
@@ -10,7 +11,9 @@ from rotctl.behaviours.posing import RiseSettings
 from rotctl.behaviours.until import Until
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
-from rotctl.motion import Poses
+from rotctl.mechanics.model import Model
+from rotctl.motion import Angle, Poses
+from rotctl.motion.mirror import exchanged, mirrored_angles
 from rotctl.settings import STRICT, NonNegative, Vector
 
 
@@ -82,3 +85,33 @@ class Stage:
             raise ValueError(
                 f"the stage {self.name!r} must have one of poses, rise and flight, not {len(given)}"
             )
+
+
+def mirrored(stage: Stage, model: Model) -> Stage:
+    """The same with the mirror images of its poses, for a turn the other way."""
+    poses, rise, flight = stage.poses, stage.rise, stage.flight
+    if poses:
+        other = None if poses.b is None else _over_phase(model, poses.b)
+        poses = Poses(_over_phase(model, poses.a), other)
+    if rise:
+        start, end = mirrored_angles(model, rise.start), mirrored_angles(model, rise.end)
+        rise = replace(rise, start=start, end=end, parts=exchanged(rise.parts))
+    if flight:
+        tuck, stretch = (mirrored_angles(model, a) for a in (flight.tuck, flight.stretch))
+        flight = replace(flight, tuck=tuck, stretch=stretch)
+        if flight.entry:
+            pose = mirrored_angles(model, flight.entry.pose)
+            flight = replace(flight, entry=replace(flight.entry, pose=pose))
+        if flight.feet:
+            pose = mirrored_angles(model, flight.feet.pose)
+            flight = replace(flight, feet=replace(flight.feet, pose=pose))
+    return replace(stage, poses=poses, rise=rise, flight=flight)
+
+
+def _over_phase(model: Model, pose: Mapping[str, Angle]) -> dict[str, Angle]:
+    """A pose over a phase that runs the other way."""
+    full = {name: a if isinstance(a, tuple) else (a, 0.0, 0.0) for name, a in pose.items()}
+    mean, cosine, sine = (
+        mirrored_angles(model, {name: a[i] for name, a in full.items()}) for i in range(3)
+    )
+    return {name: (mean[name], cosine[name], -sine[name]) for name in mean}

@@ -26,6 +26,7 @@ class FlipCriteria:
 
     Attributes:
         turn: how far the trunk's turn may be off the target in the end [deg].
+        about: what it turns about.
         flight: least time in the air [s]: a somersault is no roll.
         landing: what counts as standing in the end.
     """
@@ -35,6 +36,7 @@ class FlipCriteria:
     turn: Positive
     flight: Positive
     landing: StandingCriteria
+    about: Literal["left", "up"] = "left"
     description: str = ""
 
 
@@ -54,10 +56,10 @@ def judge(
     """Columns of a run, and why it is no success; empty if it is one.
 
     Args:
-        target: to turn about left [deg].
+        target: to turn [deg].
         period: of the control [s].
     """
-    flip = measure(log, period)
+    flip = measure(log, criteria, period)
     stood = standing.measure(log, criteria.landing, period)
     duration = len(floats(log, "trajectory/time")) * period
     reason = standing.failure(stood, criteria.landing, duration)
@@ -68,27 +70,28 @@ def judge(
     return {**asdict(stood), **asdict(flip)}, reason
 
 
-def measure(log: Arrays, period: float) -> FlipMetrics:
-    """Measure a run."""
-    turned = turn(log)
+def measure(log: Arrays, criteria: FlipCriteria, period: float) -> FlipMetrics:
+    """Measure a run; `period` is the control's [s]."""
+    turned = turn(log, criteria.about)
     if not len(turned):
         return FlipMetrics(*[math.nan] * len(COLUMNS))
     first, last = longest_flight(log)
-    left = frame(log)[1]
+    axis = frame(log)[1 if criteria.about == "left" else 2]
     momentum = floats(log, "trajectory/angular_momentum")[first]
     return FlipMetrics(
         revolved=float(turned[-1]),
         flight_time=(last - first) * period,
         take_off_speed=float(floats(log, "trajectory/com_velocity")[first, 2]),
-        take_off_momentum=float((momentum * left).sum()),
+        take_off_momentum=float((momentum * axis).sum()),
     )
 
 
-def turn(log: Arrays) -> np.ndarray:
-    """How far the trunk has turned about left since the start (steps,) [deg]."""
-    forward, _, up = frame(log)
+def turn(log: Arrays, about: Literal["left", "up"] = "left") -> np.ndarray:
+    """How far the trunk has turned since the start (steps,) [deg]."""
+    forward, left, up = frame(log)
+    aside = left if about == "up" else -up
     front = floats(log, "trajectory/trunk_axes")[:, :, 0]
-    pairs = zip((front * forward).sum(axis=1), -(front * up).sum(axis=1), strict=True)
+    pairs = zip((front * forward).sum(axis=1), (front * aside).sum(axis=1), strict=True)
     angle = np.unwrap(np.array([math.atan2(u, f) for f, u in pairs]))
     return np.asarray(np.degrees(angle - angle[:1]))
 

@@ -28,7 +28,7 @@ class Moment:
     """What a frame shows beside the model."""
 
     time: float  # [s]
-    turns: float  # in-plane, since the start of the run [rev]
+    turns: float  # about its axis, since the start of the run [rev]
     blend: float
     contacts: Array  # (k, 3)
     forces: Array  # (k, 3) [N]
@@ -36,8 +36,10 @@ class Moment:
 
 
 def turns_done(log: RunLog) -> Array:
-    """In-plane excursion since the start of the run [rev]."""
-    angle = in_frame(log, "trajectory/angular_excursion")[:, 1]
+    """Excursion about what the behaviour turns about, since the start of the run [rev]."""
+    axis = in_frame(log, "trajectory/trunk_axis")[:1]
+    about = int(np.abs(axis[0]).argmax()) if len(axis) else 1
+    angle = in_frame(log, "trajectory/angular_excursion")[:, about]
     turns: Array = (angle - angle[:1]) / (2.0 * np.pi)
     return turns
 

@@ -1,0 +1,86 @@
+"""Jumps that turn about the upright, and what they are judged by."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rotctl.behaviours.facing import frame_of
+from rotctl.config import check, composed, load
+from rotctl.errors import InputError
+from rotctl.metrics.flip import judge, longest_flight, turn
+from rotctl.run import in_memory
+from rotctl.scenario import build
+
+PERIOD = 1 / 240
+
+
+@pytest.fixture(scope="module")
+def pirouettes():
+    """Scenario and rows of a whole turn to the left, and of half a one to the right."""
+    found = {}
+    for target in (360.0, -180.0):
+        config = load(
+            [
+                "behaviour=pirouette",
+                f"behaviour.target_excursion={target}",
+                "plant=varied",
+                "seed=2000",
+                "duration=5",
+            ]
+        )
+        scenario = build(config)
+        buffer, ending = in_memory(scenario)
+        assert not ending
+        found[target] = scenario, buffer.arrays()
+    return found
+
+
+@pytest.mark.parametrize("target", [360.0, -180.0])
+def test_it_turns_as_far_as_it_should_and_stands(pirouettes, target):
+    scenario, log = pirouettes[target]
+    columns, reason = judge(log, scenario.config.criteria, target, PERIOD)
+    assert reason == ""
+    assert columns["revolved"] == pytest.approx(target, abs=15.0)
+    assert columns["flight_time"] > 0.3
+
+
+@pytest.mark.parametrize("target", [360.0, -180.0])
+def test_most_of_the_turn_is_made_in_the_air(pirouettes, target):
+    """By its momentum, which nothing changes there; swivelling feet would turn on the ground."""
+    _, log = pirouettes[target]
+    rows = slice(*longest_flight(log))
+    momentum = log["trajectory/angular_momentum"][rows, 2]
+    assert np.abs(momentum - momentum[0]).max() < 0.06 * abs(momentum[0])
+    turned = turn(log, "up")[rows]
+    assert (turned[-1] - turned[0]) / target > 0.6
+
+
+@pytest.mark.parametrize("heading", [0.0, 70.0])
+def test_turns_about_up_are_counted_from_the_heading(heading):
+    frame = frame_of("left", heading, "up")
+    for degrees in (-170.0, -30.0, 0.0, 90.0):
+        axes = Rotation.from_euler("z", heading + degrees, degrees=True).as_matrix()
+        assert frame.turned(axes) == pytest.approx(np.radians(degrees), abs=1e-12)
+        assert frame.axis(axes) == pytest.approx([0.0, 0.0, 1.0])
+
+
+def test_whole_turns_about_up_are_counted():
+    yaw = np.linspace(0.0, -540.0, 400)
+    axes = Rotation.from_euler("z", yaw[:, None], degrees=True).as_matrix()
+    log = {"trajectory/trunk_axes": axes, "command/axes": np.tile(np.eye(3), (400, 1, 1))}
+    assert turn(log, "up")[-1] == pytest.approx(-540.0, abs=1e-6)
+
+
+def test_who_turns_about_up_stands():
+    data = composed(["behaviour=pirouette"])
+    data["behaviour"] = {**data["behaviour"], "roll_about": "head"}
+    with pytest.raises(InputError, match="turn_about up needs roll_about left, not head"):
+        check(data)
+
+
+def test_a_wrong_turn_is_told(pirouettes):
+    scenario, log = pirouettes[360.0]
+    strict = replace(scenario.config.criteria, turn=0.001)
+    assert judge(log, strict, 180.0, PERIOD)[1].endswith(" deg of 180")
