@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import documents, files, plain
-from rotctl.listing import content
+from rotctl.listing import conf_dir, content, named_file
 
 _KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 _INTEGER = re.compile(r"[+-]?(?:0|[1-9][0-9]{0,17})")
@@ -45,17 +45,14 @@ def simple(override: str) -> Assignment | None:
     return None
 
 
-def composed(chosen: Iterable[Assignment], folder: Path) -> dict[str, Any] | None:
+def composed(chosen: Iterable[Assignment]) -> dict[str, Any] | None:
     """The config of the choices alone; None where Hydra has to be asked.
-
-    Args:
-        folder: of `config.yaml` and the groups.
 
     Raises:
         InputError: a file is wrong; one line that names it.
     """
     try:
-        return _composed(dict(chosen), folder)
+        return _composed(dict(chosen))
     except _NotPlainError:
         return None
 
@@ -77,8 +74,8 @@ class _File(NamedTuple):
     asks: Mapping[str, str]
 
 
-def _composed(chosen: Mapping[str, str], folder: Path) -> dict[str, Any]:
-    root = content(folder / "config.yaml")
+def _composed(chosen: Mapping[str, str]) -> dict[str, Any]:
+    root = content(conf_dir() / "config.yaml")
     listed = [entry for entry in root.get("defaults", []) if entry != SELF]
     if root.get("defaults", [])[-1:] != [SELF] or not all(isinstance(e, dict) for e in listed):
         raise _NotPlainError
@@ -89,17 +86,17 @@ def _composed(chosen: Mapping[str, str], folder: Path) -> dict[str, Any]:
     settled: set[str] = set()
     for group in reversed(usual):  # who comes later may ask for what comes before
         settled.add(group)
-        for other, name in _asks(folder / group, asked.setdefault(group, usual[group])):
+        for other, name in _asks(group, asked.setdefault(group, usual[group])):
             if other not in usual or other in settled:
                 raise _NotPlainError
             asked.setdefault(other, name)
     data: dict[str, Any] = {}
     for group in usual:
-        data = _merged(data, {group: _content(folder / group, asked[group])})
+        data = _merged(data, {group: _content(group, asked[group])})
     return _merged(data, {key: value for key, value in root.items() if key != "defaults"})
 
 
-def _asks(group: Path, name: str) -> list[tuple[str, str]]:
+def _asks(group: str, name: str) -> list[tuple[str, str]]:
     """What a file asks of other groups, before what those ask that it builds on."""
     file = _file(group, name)
     found = list(file.asks.items())
@@ -108,7 +105,7 @@ def _asks(group: Path, name: str) -> list[tuple[str, str]]:
     return found
 
 
-def _content(group: Path, name: str) -> dict[str, Any]:
+def _content(group: str, name: str) -> dict[str, Any]:
     file = _file(group, name)
     data: dict[str, Any] = {}
     for other in file.others:
@@ -116,9 +113,11 @@ def _content(group: Path, name: str) -> dict[str, Any]:
     return data
 
 
-def _file(group: Path, name: str) -> _File:
-    path = group / f"{name}.yaml"
-    if not name.isidentifier() or not path.exists():
+def _file(group: str, name: str) -> _File:
+    if not name.isidentifier():
+        raise _NotPlainError
+    path = named_file(group, name)
+    if not path.exists():
         raise _NotPlainError
     return _read(path, path.stat().st_mtime_ns)
 

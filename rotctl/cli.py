@@ -27,9 +27,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)
+    from rotctl.listing import own  # reads YAML: who asks for help need not wait for it
+
     try:
         gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
-        with _terminated_like_interrupted():
+        with _terminated_like_interrupted(), own(arguments.config_dir):
             code = int(arguments.command(arguments))
             if sys.stdout:  # None where the shell has closed it
                 sys.stdout.flush()

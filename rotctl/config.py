@@ -25,7 +25,7 @@ from rotctl.choosing import Assignment, simple
 from rotctl.control import ControllerSettings
 from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
-from rotctl.listing import choices, conf_dir, require_plain
+from rotctl.listing import choices, conf_dir, folders, own_dir, require_plain
 from rotctl.log import RunLog
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.disturbance import DisturbanceSettings
@@ -135,7 +135,7 @@ def _set_on_choices(found: list[Assignment]) -> dict[str, Any] | None:
     if any(one.value not in choices(one.key) for one in chosen):
         return None
     try:
-        data: Any = copy.deepcopy(_chosen(tuple(chosen), conf_dir(), _stamp(conf_dir())))
+        data: Any = copy.deepcopy(_chosen(tuple(chosen), folders(), _stamp(folders())))
     except InputError:
         return None
     for key, value in found:
@@ -148,9 +148,11 @@ def _set_on_choices(found: list[Assignment]) -> dict[str, Any] | None:
 
 
 @lru_cache(maxsize=64)
-def _chosen(chosen: tuple[Assignment, ...], folder: Path, stamp: tuple[int, ...]) -> dict[str, Any]:
+def _chosen(
+    chosen: tuple[Assignment, ...], among: tuple[Path, ...], stamp: tuple[int, ...]
+) -> dict[str, Any]:
     """Composed of choices alone, from files as they were at some time."""
-    data = choosing.composed(chosen, folder)
+    data = choosing.composed(chosen)
     if data is not None:
         return data
     from rotctl.overrides import single
@@ -159,9 +161,11 @@ def _chosen(chosen: tuple[Assignment, ...], folder: Path, stamp: tuple[int, ...]
     return _by_hydra(texts, [single(text) for text in texts])
 
 
-def _stamp(folder: Path) -> tuple[int, ...]:
-    """When each file of a folder was changed."""
-    return tuple(path.stat().st_mtime_ns for path in sorted(folder.rglob("*.yaml")))
+def _stamp(among: tuple[Path, ...]) -> tuple[int, ...]:
+    """When each file of some folders was changed."""
+    forms = ("*.yaml", "*/*.yaml")
+    paths = [path for folder in among for form in forms for path in sorted(folder.glob(form))]
+    return tuple(path.stat().st_mtime_ns for path in paths)
 
 
 def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
@@ -174,13 +178,20 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
-            config = compose("config", overrides)
+            config = compose("config", [*overrides, *_searched()])
             data: Any = OmegaConf.to_container(config, resolve=True, throw_on_missing=True)
     except MissingMandatoryValue as error:
         raise InputError(f"{error.full_key}: missing, give it as {error.full_key}=VALUE") from None
     except (HydraException, OmegaConfBaseException, ValueError) as error:
         raise InputError(_explain(error, found)) from None
     return data
+
+
+def _searched() -> list[str]:
+    """Tells Hydra of the user's folder."""
+    mine = own_dir()
+    quoted = str(mine).replace("\\", "\\\\").replace("'", "\\'")
+    return [f"hydra.searchpath=['file://{quoted}']"] if mine else []
 
 
 def check(data: Any) -> Config:

@@ -1,14 +1,24 @@
-"""Where the configs lie, what can be chosen, and whether it is plain; needs YAML alone: quick."""
+"""Where the configs lie, what can be chosen, and whether it is plain; needs YAML alone: quick.
 
+Beside what comes with rotctl the user may have a folder of configs of the same form. Which one is
+in the environment, so that workers have the same. A `./conf` counts by itself only with a
+`rotctl.yaml` in it: many a program keeps its own configs in a folder of that name.
+"""
+
+import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from rotctl import documents, files, plain
 from rotctl.errors import InputError
 
-_NO_GROUPS = {"motion", "tune"}  # folders of conf/ that no config is composed from
+OWN = "ROTCTL_CONFIG_DIR"
+EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl
+MARK = "rotctl.yaml"  # in a folder of configs that is the user's
+_NO_GROUPS = {"motion", "tune", EXPERIMENTS}  # folders of conf/ that no config is composed from
 MOST_VALUES = 20_000  # of a file; Hydra takes seconds for as many
 _DEFAULT = re.compile(r"(?:override )?/?(\w+)(?:@[\w.]+)?")  # a group in a list of defaults
 
@@ -38,11 +48,79 @@ def shipped(name: str, holds: str = "*.yaml") -> Path:
     raise InputError(f"no {name}/{holds} in {package} or beside it; reinstall rotctl")
 
 
+def own_dir() -> Path | None:
+    """The user's folder of configs, if there is one."""
+    named = os.environ.get(OWN)
+    return Path(named) if named else None
+
+
+@contextmanager
+def own(folder: Path | None) -> Iterator[None]:
+    """While it lasts, a folder is the user's; without one, a `./conf` that is marked.
+
+    Raises:
+        InputError: there is no such folder.
+    """
+    before = os.environ.get(OWN)
+    found = folder or (Path("conf") if not before and Path("conf", MARK).is_file() else None)
+    if found:
+        if not found.is_dir():
+            raise InputError(f"--config-dir={found}: no such folder")
+        os.environ[OWN] = str(found.resolve())
+    try:
+        yield
+    finally:
+        if found:
+            os.environ.pop(OWN)
+            os.environ.update({OWN: before} if before else {})
+
+
+def named_files(folder: str) -> dict[str, Path]:
+    """Name -> file of a folder of configs, what comes with rotctl and then the user's.
+
+    Args:
+        folder: a group, or `motion`, `tune`, `experiments`.
+    """
+    first = conf_dir().parent if folder == EXPERIMENTS else conf_dir()
+    places = [place / folder for place in (first, own_dir()) if place]
+    found: dict[str, Path] = {}
+    for place in places:
+        for path in sorted(place.glob("*.yaml")):
+            found.setdefault(path.stem, path)
+    return found
+
+
+def named_file(folder: str, name: str) -> Path:
+    """The file of a name, which may not be there.
+
+    Raises:
+        InputError: rotctl has one of that name, and the user too.
+    """
+    found = named_files(folder).get(name, conf_dir() / folder / f"{name}.yaml")
+    mine = own_dir()
+    if mine and found != mine / folder / found.name and (mine / folder / found.name).exists():
+        raise InputError(
+            f"{mine / folder / found.name}: rotctl has one of that name; give yours another"
+        )
+    return found
+
+
+def folders() -> tuple[Path, ...]:
+    """Where configs lie: rotctl's, then the user's."""
+    return tuple(filter(None, (conf_dir(), own_dir())))
+
+
+def is_own(path: Path) -> bool:
+    """Whether a file is of the user's folder."""
+    mine = own_dir()
+    return mine is not None and path.is_relative_to(mine)
+
+
 def choices(group: str) -> list[str]:
     """The choices of a config group, sorted; empty if there is no such group."""
-    if not group.isidentifier() or group in _NO_GROUPS:
+    if not group.isidentifier() or group in _NO_GROUPS or not (conf_dir() / group).is_dir():
         return []
-    return sorted(path.stem for path in (conf_dir() / group).glob("*.yaml"))
+    return sorted(named_files(group))
 
 
 def groups() -> dict[str, dict[str, str]]:
@@ -52,10 +130,14 @@ def groups() -> dict[str, dict[str, str]]:
     is wrong with the file.
     """
     found: dict[str, dict[str, str]] = {}
-    for path in sorted(conf_dir().glob("*/*.yaml")):
-        if path.parent.name not in _NO_GROUPS:
-            found.setdefault(path.parent.name, {})[path.stem] = _described(path)
+    for group in sorted({path.parent.name for path in conf_dir().glob("*/*.yaml")} - _NO_GROUPS):
+        found[group] = described(group)
     return found
+
+
+def described(folder: str) -> dict[str, str]:
+    """Names in a folder of configs to a line of description each, see `groups`; sorted."""
+    return {name: _described(path) for name, path in sorted(named_files(folder).items())}
 
 
 def require_plain(chosen: Iterable[tuple[str, str]]) -> None:
@@ -72,7 +154,7 @@ def require_plain(chosen: Iterable[tuple[str, str]]) -> None:
         group, name = waiting.pop()
         if (group, name) not in seen:
             seen.add((group, name))
-            waiting += _defaults(conf_dir() / group / f"{name}.yaml")
+            waiting += _defaults(named_file(group, name) if group else conf_dir() / "config.yaml")
 
 
 def content(path: Path) -> dict[str, Any]:
@@ -110,6 +192,7 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
 
 def _described(path: Path) -> str:
     try:
+        named_file(path.parent.name, path.stem)  # of which there must be one
         description = content(path).get("description")
         text = files.text(path, documents.LARGEST, linked=True)
         return " ".join(str(description or _first_comment(text)).split())

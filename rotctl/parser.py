@@ -2,10 +2,11 @@
 
 import argparse
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, NoReturn
 
 from rotctl import __version__
-from rotctl.commands import clips, logs, runs, studies
+from rotctl.commands import clips, folders, logs, runs, studies
 from rotctl.errors import bounded
 from rotctl.wording import one_line
 
@@ -18,6 +19,9 @@ examples:
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
   rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen
+  rotctl new behaviour mine --from back_flip      a copy to change, in ./conf
+  rotctl ls sweeps/a                              the runs in a folder
+  rotctl diff runs/A/run.h5 runs/B/run.h5         configs and figures that differ
   rotctl show behaviour=forward_roll_1            the whole config, with these choices
   rotctl replay runs/<run id>/run.h5              a page that plays it in the browser
   rotctl render runs/<run id>/run.h5 --filmstrip roll.png --video roll.mp4
@@ -35,7 +39,8 @@ repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad in
 # In the order of the help.
 COMMANDS = (
     *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
-    *(runs.add_list, runs.add_show, logs.add_inspect, logs.add_verify, runs.add_bench),
+    *(runs.add_list, runs.add_show, folders.add_new, folders.add_ls, folders.add_diff),
+    *(logs.add_inspect, logs.add_verify, runs.add_bench),
     *(studies.add_sweep, studies.add_summarise, studies.add_report, studies.add_tune),
     *(clips.add_import, clips.add_author, clips.add_preview),
 )
@@ -72,10 +77,22 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", action="version", version=f"rotctl {__version__}")
+    _add_config_dir(parser, None)
     chosen = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for add in COMMANDS:
         add(chosen)
     for command in chosen.choices.values():
+        _add_config_dir(command, argparse.SUPPRESS)  # before or after the command's name
         interrupted = command.get_default("interrupted") or NO_LOG
         command.set_defaults(parser=command, interrupted=interrupted)
     return parser
+
+
+def _add_config_dir(parser: argparse.ArgumentParser, default: str | None) -> None:
+    parser.add_argument(
+        "--config-dir",
+        type=Path,
+        default=default,
+        metavar="DIR",
+        help="your own behaviours, characters, ... [./conf if it has a rotctl.yaml]",
+    )

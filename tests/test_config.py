@@ -9,8 +9,7 @@ from dataclasses import FrozenInstanceError, asdict
 import pytest
 import yaml
 
-from rotctl import choosing
-from rotctl import config as module
+from rotctl import choosing, listing
 from rotctl.choosing import simple
 from rotctl.config import _by_hydra as by_hydra
 from rotctl.config import check, composed, load, to_dict, to_yaml
@@ -389,7 +388,8 @@ def test_a_composed_config_may_be_changed_and_the_next_is_as_it_was():
 
 def test_a_file_that_changed_is_read_again(tmp_path, monkeypatch):
     shutil.copytree(conf_dir(), tmp_path / "conf")
-    monkeypatch.setattr(module, "conf_dir", lambda: tmp_path / "conf")
+    (tmp_path / "package").mkdir()
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
     assert composed(["start=rest"])["start"]["pitch"] == [-0.3, 0.0]
     file = tmp_path / "conf" / "start" / "rest.yaml"
     file.write_text(file.read_text().replace("pitch: [-0.3, 0.0]", "pitch: [-0.2, 0.0]"))
@@ -413,7 +413,7 @@ CHOICES = [[f"{group}={name}" for group, name in some.items()] for some in one_o
 
 @pytest.mark.parametrize("overrides", CHOICES, ids=" ".join)
 def test_what_choices_make_is_what_hydra_makes_of_them(overrides):
-    made = choosing.composed(map(simple, overrides), conf_dir())
+    made = choosing.composed(map(simple, overrides))
     assert made == by_hydra(overrides, [single(text) for text in overrides])
 
 
@@ -455,7 +455,9 @@ def test_what_is_not_simple_is_left_to_hydra(text):
         ("config.yaml", "defaults: [_self_, {start: rest}]\n"),
     ],
 )
-def test_files_that_say_more_are_left_to_hydra(tmp_path, file, text):
+def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text):
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "conf" / file).write_text(text)
-    assert choosing.composed([simple("start=rest")], tmp_path / "conf") is None
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
+    (tmp_path / "package").mkdir()
+    assert choosing.composed([simple("start=rest")]) is None

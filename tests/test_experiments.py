@@ -61,8 +61,10 @@ def test_table_1_has_the_velocities_of_the_paper():
 
 def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys):
     text = (shipped("experiments") / "forward_roll_1.yaml").read_text()
-    (tmp_path / "wrong.yaml").write_text(text.replace("forward_roll_1,", "no_roll,"))
-    monkeypatch.setattr("rotctl.results.experiments.shipped", lambda name: tmp_path)
+    (tmp_path / "experiments").mkdir()
+    file = tmp_path / "experiments" / "wrong.yaml"
+    file.write_text(text.replace("forward_roll_1,", "no_roll,"))
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
     assert main(["sweep", "+experiment=wrong", "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
     assert error.startswith('rotctl: behaviour="no_roll": no such choice; valid: ')
@@ -138,8 +140,10 @@ def test_what_is_wrong_is_said(overrides, message):
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):
-    (tmp_path / "wrong.yaml").write_text(text)
-    monkeypatch.setattr("rotctl.results.experiments.shipped", lambda name: tmp_path)
+    (tmp_path / "experiments").mkdir()
+    file = tmp_path / "experiments" / "wrong.yaml"
+    file.write_text(text)
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
     with pytest.raises(InputError) as error:
         experiment("wrong")
-    assert str(error.value) == f"{tmp_path / 'wrong.yaml'}{message}"
+    assert str(error.value) == f"{file}{message}"

@@ -130,13 +130,24 @@ def add_list(commands: Commands) -> None:
 
 def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
-    from rotctl.listing import groups
+    from rotctl.listing import described, groups, is_own, named_files
 
-    for group, choices in groups().items():
-        print(group)
+    others = {
+        "motion (behaviour.reference.clip=NAME)": "motion",
+        "tune (rotctl tune NAME)": "tune",
+        "experiments (rotctl sweep +experiment=NAME)": "experiments",
+    }
+    listed = {group: (group, choices) for group, choices in groups().items()}
+    listed |= {title: (folder, described(folder)) for title, folder in others.items()}
+    for title, (folder, choices) in listed.items():
+        if not choices:
+            continue
+        print(title)
         width = max(map(len, choices))
+        places = named_files(folder)
         for choice, description in choices.items():
-            print(f"  {choice:{width}}  {description}".rstrip())
+            mine = f"  [yours: {places[choice]}]" if is_own(places[choice]) else ""
+            print(f"  {choice:{width}}  {description}{mine}".rstrip())
     print("\nchoose with GROUP=CHOICE, change a value with KEY=VALUE; see: rotctl show")
     return 0
 

@@ -16,7 +16,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl import checked, documents, files
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
+from rotctl.listing import named_file, named_files
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
@@ -92,8 +92,8 @@ class Clip:
 
 
 def names() -> list[str]:
-    """The clips that come with rotctl."""
-    return sorted(path.stem for path in (conf_dir() / "motion").glob("*.yaml"))
+    """The clips that come with rotctl, and those of the user's folder."""
+    return sorted(named_files("motion"))
 
 
 def load_clip(name: str) -> Clip:
@@ -108,7 +108,7 @@ def load_clip(name: str) -> Clip:
         raise InputError(
             f"{name}: no such clip; valid: {', '.join(names())}, or the path of a .yaml file"
         )
-    return _read(conf_dir() / "motion" / f"{name}.yaml")
+    return _read(named_file("motion", name))
 
 
 def _read(path: Path) -> Clip:

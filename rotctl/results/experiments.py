@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl import checked, documents, files
 from rotctl.errors import InputError
-from rotctl.listing import shipped
+from rotctl.listing import named_file, named_files
 from rotctl.metrics.claims import Claim, Where
 from rotctl.settings import STRICT
 
@@ -63,11 +63,11 @@ def _key(override: str) -> str:
 
 def names() -> list[str]:
     """The experiments there are, sorted."""
-    return sorted(path.stem for path in shipped("experiments").glob("*.yaml"))
+    return sorted(named_files("experiments"))
 
 
 def experiment(name: str) -> Experiment:
-    """An experiment that comes with rotctl.
+    """An experiment that comes with rotctl, or is in the user's folder.
 
     Raises:
         InputError: there is no such experiment, or its file is wrong.
@@ -128,4 +128,4 @@ def _path(name: str) -> Path:
     valid = names()
     if name not in valid:
         raise InputError(f"{PREFIX}{name}: no such experiment; valid: {', '.join(valid)}")
-    return shipped("experiments") / f"{name}.yaml"
+    return named_file("experiments", name)

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 
 from rotctl import files
-from rotctl.listing import conf_dir
+from rotctl.listing import conf_dir, own_dir
 from rotctl.log import collect
 from rotctl.plain import way
 from rotctl.tune.chart import plot, table
@@ -109,7 +109,7 @@ def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str
     ]
     chosen = [f"{group}={choice_name(result)}" for group in groups]
     overrides = _shell([*kept, *chosen, "seed=range(0,50)"])
-    copies = [f"  cp {file} {conf_dir() / file.parent.name}/" for file in written]
+    copies = [f"  cp {file} {(own_dir() or conf_dir()) / file.parent.name}/" for file in written]
     judged = f"  rotctl sweep {overrides} --out {folder / 'judged'}"
     return "\n".join(["to judge it, on seeds that no search has seen:", *copies, judged])
 

@@ -12,7 +12,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl import documents
 from rotctl.checked import checked
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
+from rotctl.listing import named_file, named_files
 from rotctl.metrics import appearance, pace, rolling
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.key_braces import MOST, expanded
@@ -225,7 +225,7 @@ class Space:
 
 def names() -> list[str]:
     """The spaces that come with rotctl."""
-    return sorted(path.stem for path in (conf_dir() / "tune").glob("*.yaml"))
+    return sorted(named_files("tune"))
 
 
 def load_space(name: str) -> Space:
@@ -238,7 +238,7 @@ def load_space(name: str) -> Space:
         raise InputError(
             f"{name}: no such space; valid: {', '.join(names())}, or the path of a .yaml file"
         )
-    path = Path(name) if name.endswith(".yaml") else conf_dir() / "tune" / f"{name}.yaml"
+    path = Path(name) if name.endswith(".yaml") else named_file("tune", name)
     data = documents.read_yaml(path, linked=True)
     if isinstance(data, dict) and "parameters" in data:
         data["parameters"] = expanded(data["parameters"])

@@ -1,0 +1,98 @@
+"""One's own files and results: `new`, `ls`, `diff`."""
+
+import argparse
+from pathlib import Path
+
+from rotctl.commands.arguments import Commands
+from rotctl.errors import InputError
+from rotctl.wording import one_line, printable
+
+
+def add_new(commands: Commands) -> None:
+    """Add `new`."""
+    command = commands.add_parser(
+        "new",
+        help="a behaviour, character, terrain, ... of your own",
+        description="Copy a choice with its comments under another name into your own folder of "
+        "configs, ./conf or --config-dir, as in: rotctl new behaviour my_roll --from "
+        "forward_roll_2. It is a choice like any other then.",
+    )
+    command.add_argument("kind", metavar="KIND", help="a group of rotctl list, or motion, tune, "
+                         "experiments")  # fmt: skip
+    command.add_argument("name", metavar="NAME")
+    command.add_argument("--from", dest="source", required=True, metavar="CHOICE")
+    command.set_defaults(command=new, interrupted="an unfinished file is not written")
+
+
+def new(arguments: argparse.Namespace) -> int:
+    """Begin a file of one's own."""
+    from rotctl.own_folder import make
+
+    print(make(arguments.kind, arguments.name, arguments.source))
+    return 0
+
+
+def add_ls(commands: Commands) -> None:
+    """Add `ls`."""
+    command = commands.add_parser(
+        "ls",
+        help="the runs in a folder",
+        description="List the runs below a folder, one a line: run id, behaviour, seed, duration "
+        "and how it ended.",
+    )
+    command.add_argument(
+        "folder", type=Path, nargs="?", default=Path("runs"), metavar="DIR", help="[%(default)s]"
+    )
+    command.set_defaults(command=ls)
+
+
+def ls(arguments: argparse.Namespace) -> int:
+    """List runs."""
+    from rotctl.results.stored_runs import DONE, stored_runs
+
+    runs, notes = stored_runs(arguments.folder)
+    rows = []
+    for run in runs:
+        outcome = run.outcome
+        verdict = "success" if outcome.get("success") else str(outcome.get("failure_reason", ""))
+        lasted = outcome.get("duration")
+        rows.append(
+            [
+                run.run_id,
+                str(outcome.get("behaviour", "-")),
+                f"seed {outcome.get('seed', '-')}",
+                f"{lasted:.1f} s" if isinstance(lasted, int | float) else "-",
+                verdict if run.status == DONE else f"{run.status}: {run.reason}",
+            ]
+        )
+    wide = [max(len(row[i]) for row in rows) for i in range(4)]
+    for row in rows:
+        cells = [f"{text:{width}}" for text, width in zip(row, wide, strict=False)]
+        print(printable("  ".join([*cells, " ".join(row[4].split())])))
+    for note in notes:
+        print(one_line(note))
+    return 0
+
+
+def add_diff(commands: Commands) -> None:
+    """Add `diff`."""
+    command = commands.add_parser(
+        "diff",
+        help="what differs between two runs or two sweeps",
+        description="Compare two logs, or two folders of runs: the config's values that differ, "
+        "and the figures (of a folder median and quartiles).",
+    )
+    command.add_argument("one", type=Path, metavar="A", help="RUN.h5, or a folder")
+    command.add_argument("other", type=Path, metavar="B")
+    command.set_defaults(command=diff)
+
+
+def diff(arguments: argparse.Namespace) -> int:
+    """Compare runs or sweeps."""
+    from rotctl.results.comparison import compared
+
+    for path in (arguments.one, arguments.other):
+        if not path.exists():
+            raise InputError(f"{path}: no such file or folder")
+    print(printable(compared(arguments.one, arguments.other)))
+    return 0

@@ -1,0 +1,52 @@
+"""A file of one's own, begun as a copy of one that there is."""
+
+import re
+from pathlib import Path
+
+from rotctl import __version__, documents, files
+from rotctl.errors import InputError
+from rotctl.listing import MARK, groups, named_file, named_files, own_dir
+
+MARKED = """\
+# Your own configs for rotctl: behaviour/, character/, terrain/, start/, ..., clips in motion/,
+# search spaces in tune/, experiments in experiments/. rotctl takes this folder, ./conf, by itself
+# because this file is in it, and any other by --config-dir. Nothing in it is executed.
+"""
+_NO_GROUPS = ("motion", "tune", "experiments")
+_NAME = re.compile(r"^name: .*$", re.MULTILINE)
+
+
+def kinds() -> list[str]:
+    """The folders that a file of one's own may be in."""
+    return [*groups(), *_NO_GROUPS]
+
+
+def make(kind: str, name: str, source: str) -> Path:
+    """Copy a choice, with its comments, under another name into the user's folder.
+
+    Args:
+        kind: one of `kinds()`.
+        source: the choice that is copied, rotctl's or the user's.
+
+    Raises:
+        InputError: there is no such choice, or one of that name already; nothing is written.
+    """
+    if kind not in kinds():
+        raise InputError(f"{kind}: no such kind of file; valid: {', '.join(kinds())}")
+    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
+        raise InputError(f"{name}: must be letters, digits and _, a letter first")
+    there = named_files(kind)
+    if source not in there:
+        raise InputError(f"--from={source}: no such {kind}; valid: {', '.join(there)}")
+    if name in there:
+        raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
+    text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
+    text = _NAME.sub(f"name: {name}", text, count=1)
+    folder = own_dir() or Path("conf")
+    path = folder / kind / f"{name}.yaml"
+    with files.folder(path.parent, linked=True):
+        if own_dir() is None and not (folder / MARK).exists():
+            files.replace(folder / MARK, MARKED.encode())
+        copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"
+        files.replace(path, (text if text.startswith("# @") else copied + text).encode())
+    return path

@@ -1,0 +1,186 @@
+"""A folder of one's own: choices beside ours, begun as copies; runs listed and compared."""
+
+import os
+
+import numpy as np
+import pytest
+import yaml
+
+from rotctl import api, listing
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.listing import conf_dir, named_file
+from rotctl.motion import load_clip
+from rotctl.own_folder import kinds, make
+from rotctl.results import experiments
+from rotctl.tune.space import load_space
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder that the command line is called in."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(listing.OWN, raising=False)
+    return tmp_path
+
+
+@pytest.fixture
+def cli(here, capsys):
+    """Calls the command line in this process: (exit code, stdout, stderr)."""
+
+    def call(*arguments):
+        code = main([str(argument) for argument in arguments])
+        return (code, *capsys.readouterr())
+
+    return call
+
+
+def test_a_copy_is_a_choice_like_any_other(here, cli):
+    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")
+    assert (code, said) == (0, "conf/behaviour/my_roll.yaml\n")
+    mine, theirs = (
+        path.read_text().splitlines()
+        for path in (here / said.strip(), conf_dir() / "behaviour" / "forward_roll_2.yaml")
+    )
+    assert mine[0].startswith("# Copied from behaviour/forward_roll_2 of rotctl ")
+    assert [a for a, b in zip(mine[1:], theirs, strict=True) if a != b] == ["name: my_roll"]
+    shown = yaml.safe_load(cli("show", "behaviour=my_roll")[1])
+    with_hydra = yaml.safe_load(cli("show", "behaviour=my_roll", "~behaviour.source")[1])
+    theirs = yaml.safe_load(cli("show", "behaviour=forward_roll_2")[1])
+    assert shown.pop("behaviour")["name"] == "my_roll" == with_hydra.pop("behaviour")["name"]
+    theirs.pop("behaviour")
+    assert shown == theirs == with_hydra
+    (line,) = [line for line in cli("list")[1].splitlines() if "my_roll" in line]
+    assert line.endswith(f"[yours: {here / 'conf' / 'behaviour' / 'my_roll.yaml'}]")
+    assert listing.OWN not in os.environ
+
+
+def test_a_conf_that_is_not_marked_is_somebody_elses(here, cli):
+    cli("new", "start", "my_start", "--from", "rest")
+    assert cli("show", "start=my_start")[0] == 0
+    (here / "conf" / "rotctl.yaml").unlink()
+    assert 'start="my_start": no such choice' in cli("show", "start=my_start")[2]
+    assert cli("--config-dir", "conf", "show", "start=my_start")[0] == 0
+    assert cli("show", "start=my_start", "--config-dir", here / "conf")[0] == 0
+    assert cli("--config-dir", "no", "list")[2] == "rotctl: --config-dir=no: no such folder\n"
+
+
+def test_a_name_of_ours_is_not_taken(here, cli):
+    cli("new", "start", "my_start", "--from", "rest")
+    own = here / "conf" / "start" / "tucked.yaml"
+    own.write_text("name: mine\n")
+    message = f"{own}: rotctl has one of that name; give yours another"
+    assert cli("show", "start=tucked")[2] == f"rotctl: {message}\n"
+    assert cli("show", "start=rest")[0] == 0  # and nothing else is broken by it
+    assert cli("list")[0] == 0
+
+
+@pytest.mark.parametrize("text", ["speed: [1.2", "- a", "source: ${oc.env:HOME}"])
+def test_a_wrong_file_breaks_no_list(here, cli, text):
+    cli("new", "start", "my_start", "--from", "rest")
+    path = here / "conf" / "start" / "my_start.yaml"
+    path.write_text(text)
+    code, said, error = cli("list")
+    assert (code, error) == (0, "")
+    assert f"cannot be used: {path}" in said
+    assert cli("show", "start=my_start")[2].startswith(f"rotctl: {path}:")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (("house", "a", "b"), "house: no such kind of file; valid: behaviour, "),
+        (("start", "../a", "rest"), "../a: must be letters, digits and _, a letter first"),
+        (("start", "a", "nope"), "--from=nope: no such start; valid: falling, "),
+        (("start", "still", "rest"), "still: there is a start of that name: "),
+    ],
+)
+def test_what_cannot_be_begun(here, arguments, complaint):
+    with pytest.raises(InputError) as error:
+        make(*arguments)
+    assert str(error.value).startswith(complaint)
+    assert not list(here.iterdir())
+
+
+def test_every_kind_can_be_begun(here):
+    first = {"motion": "log_roll", "tune": "clip", "experiments": "table1"}
+    for kind in kinds():
+        source = first.get(kind) or listing.choices(kind)[0]
+        assert make(kind, "my_own", source).read_text()
+    with listing.own(here / "conf"):
+        assert load_clip("my_own").name == "my_own"
+        assert load_space("my_own")
+        assert experiments.experiment("my_own").title
+        assert named_file("motion", "my_own") == here / "conf" / "motion" / "my_own.yaml"
+        for group in listing.groups():
+            assert "my_own" in listing.choices(group)
+
+
+def test_five_calls(here):
+    make("behaviour", "my_roll", "forward_roll_2")
+    config = api.load(["behaviour=my_roll", "duration=0.5"], config_dir="conf")
+    steps = []
+    log = api.simulate(config, "out", progress=lambda: steps.append(1))
+    assert len(steps) == log.steps == 30
+    assert np.array_equal(api.read(log.path)["trajectory/qpos"], log["trajectory/qpos"])
+    rows = api.sweep(
+        ["behaviour=my_roll", "seed=3,4", "duration=0.3"], "s", jobs=1, config_dir="conf"
+    )
+    assert rows["seed"].tolist() == [3, 4]
+    assert rows["status"].tolist() == ["done", "done"]
+    (here / "conf").rename("elsewhere")
+    with pytest.raises(InputError, match='behaviour="my_roll": no such choice'):
+        api.load(["behaviour=my_roll"])
+
+
+def test_a_report_is_the_fifth(here, monkeypatch):
+    called = []
+    monkeypatch.setattr("rotctl.report.site.build.report", lambda *paths: called.append(paths))
+    assert api.report("s", "pages") == here.joinpath("pages", "index.html").relative_to(here)
+    assert [str(path) for path in called[0]] == ["s", "pages"]
+
+
+def test_runs_are_listed_and_compared(here, cli):
+    for seed in (2000, 2001):
+        config = load([f"seed={seed}", "duration=0.3", f"controller.pose.weight=0.{seed}"])
+        api.simulate(config)
+    code, said, _ = cli("ls")
+    assert code == 0
+    assert [line.split()[1:6] for line in said.splitlines()] == [
+        ["forward_roll_1", "seed", str(seed), "0.3", "s"]
+        for seed in sorted((2000, 2001), key=lambda s: _folder(s))
+    ]
+    one, other = _folder(2000), _folder(2001)
+    said = cli("diff", one, other / "run.h5")[1].splitlines()
+    assert said[0].split() == ["config", str(one), str(other / "run.h5")]
+    assert [line.split() for line in said[1:3]] == [
+        ["controller.pose.weight", "0.2", "0.2001"],
+        ["seed", "2000", "2001"],
+    ]
+    assert "figures" in said[4]
+    assert cli("diff", one, one)[1] == "config: the same\n\nfigures: the same\n"
+    assert cli("diff", one, "runs")[2] == (
+        f"rotctl: {one} and runs: a run and a sweep; give two of a kind\n"
+    )
+    assert cli("diff", one, "no")[2] == "rotctl: no: no such file or folder\n"
+
+
+def _folder(seed):
+    from pathlib import Path
+
+    found = [path for path in Path("runs").iterdir() if f"seed: {seed}" in
+             (path / "config.yaml").read_text()]  # fmt: skip
+    return found[0]
+
+
+def test_sweeps_are_compared(here, cli):
+    for name, weight in (("a", 0.6), ("b", 0.7)):
+        for seed in (1, 2):
+            api.simulate(
+                load([f"seed={seed}", "duration=0.3", f"controller.pose.weight={weight}"]), name
+            )
+    said = cli("diff", "a", "b")[1]
+    assert said.splitlines()[1].split() == ["controller.pose.weight", "0.6", "0.7"]
+    assert "seed" not in said.partition("figures")[0]
+    assert "torque_p99_fraction" in said.partition("figures")[2]
