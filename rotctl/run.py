@@ -11,13 +11,14 @@ import numpy as np
 
 from rotctl import files
 from rotctl.config import Config, to_yaml
+from rotctl.control import Controller
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, TrajectoryBuffer, collect, encode_run
 from rotctl.log.digest import simulated as hashed
 from rotctl.log.writer import whole
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
-from rotctl.scenario import Scenario, build
+from rotctl.scenario import Making, Scenario, build
 from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
 from rotctl.summary import Summary, broke_down, summarise
@@ -90,26 +91,29 @@ def make(config: Config) -> EncodedRun:
     return simulated(config, lambda summary: True)
 
 
-def simulated(config: Config, keeps: Callable[[Summary], bool]) -> EncodedRun:
+def simulated(
+    config: Config, keeps: Callable[[Summary], bool], controller_of: Making = Controller
+) -> EncodedRun:
     """Simulate a config and write nothing.
 
     Args:
         keeps: whether the log of a run with that summary row is wanted.
+        controller_of: as for `rotctl.scenario.build`.
 
     Raises:
         InputError: the config does not make a run.
     """
-    return _encoded(built(config), lambda: None, keeps)
+    return _encoded(built(config, controller_of), lambda: None, keeps)
 
 
-def built(config: Config) -> Scenario:
-    """The parts of a run, without a word from MuJoCo.
+def built(config: Config, controller_of: Making = Controller) -> Scenario:
+    """The parts of a run, without a word from MuJoCo; see `rotctl.scenario.build`.
 
     Raises:
         InputError: the config does not make a run.
     """
     with quiet():
-        return build(config)
+        return build(config, controller_of)
 
 
 def _encoded(
@@ -120,8 +124,8 @@ def _encoded(
     begin = time.perf_counter()
     buffer, ending = in_memory(scenario, progress)
     wall = time.perf_counter() - begin
-    summary = summarise(scenario, buffer, ending, wall)
     arrays, source = whole(buffer, scenario.model.mjcf), origin(scenario)
+    summary = summarise(scenario, arrays, ending, wall)
     digest, log, text = hashed(arrays), b"", ""
     if keeps(summary):
         text = to_yaml(scenario.config)

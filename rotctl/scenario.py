@@ -3,6 +3,7 @@
 import hashlib
 import json
 import re
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -12,7 +13,7 @@ import numpy as np
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config, to_dict
-from rotctl.control import Controller
+from rotctl.control import Controller, ControllerSettings
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
@@ -57,8 +58,15 @@ class Scenario:
     run_id: str
 
 
-def build(config: Config) -> Scenario:
+Making = Callable[[Model, ControllerSettings], Controller]
+
+
+def build(config: Config, controller_of: Making = Controller) -> Scenario:
     """Make all parts of a run.
+
+    Args:
+        controller_of: makes controllers, or hands out again what it made for the same: where a
+            run is over before the next one begins, they can share one.
 
     Raises:
         InputError: parts that do not fit together, with one clear line.
@@ -69,7 +77,7 @@ def build(config: Config) -> Scenario:
     _check(config, known)
     behaviour = config.behaviour.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
-    controller = Controller(known, control)
+    controller = controller_of(known, control)
     motors = Motors(model, config.plant.delay)
     substeps = config.physics.substeps
     senses = Senses(known, model, config.plant, motors, substeps, plant)

@@ -5,23 +5,28 @@ from collections.abc import Mapping
 from typing import Any
 
 from rotctl.log import TrajectoryBuffer
+from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario
 
 Summary = dict[str, Any]
 
 
-def summarise(scenario: Scenario, buffer: TrajectoryBuffer, ending: str, wall: float) -> Summary:
+def summarise(
+    scenario: Scenario, run: TrajectoryBuffer | Arrays, ending: str, wall: float
+) -> Summary:
     """The summary row of a simulated run.
 
     Args:
+        run: the buffer, or schema path -> array.
         ending: what ended it early; empty if nothing did.
         wall: the time the loop took [s].
     """
     config = scenario.config
     period = 1.0 / config.controller.rate
+    log = run.arrays() if isinstance(run, TrajectoryBuffer) else run
     judgement = judge(
-        buffer.arrays(),
+        log,
         config.criteria,
         config.behaviour.commanded,
         period,

@@ -89,7 +89,7 @@ def repeat(log: RunLog, progress: Callable[[], object] = lambda: None) -> Repeti
     whole = [name for name in SCHEMA if not _has_rows(name) and not _same(log[name], here[name])]
     asked = parted is not None and MODEL_PATH not in whole
     if parted is None:
-        summary = summarise(scenario, buffer, breakdown, wall=1.0)
+        summary = summarise(scenario, here, breakdown, wall=1.0)
         whole += [f"outcome {key}" for key in _unlike(log.outcome, summary)]
     return Repetition(
         steps=log.steps,

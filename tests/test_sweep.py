@@ -21,6 +21,7 @@ from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned
 from rotctl.sweep.points import points
+from rotctl.sweep.task import carry_out, ordered
 
 BRIEF = "duration=2"
 
@@ -257,6 +258,17 @@ def test_a_manifest_of_somebody_else_is_refused(cli, tmp_path):
         2,
         f"rotctl: {tmp_path / 'sweep.jsonl'}: line 1 is not a row of a sweep\n",
     )
+
+
+@pytest.mark.parametrize("grid", [["behaviour=stand"], ["plant=randomised"], []])
+def test_a_worker_that_has_simulated_other_runs_gives_the_same_bits(grid):
+    """Its controller serves one run after the other."""
+    first, second = runs_of("duration=0.5", "seed=1,2", *grid)
+    here = [carry_out(ordered(run.config, "never")) for run in (first, second, first)]
+    assert [made.trajectory for made in here] == [
+        make(run.config).trajectory for run in (first, second, first)
+    ]
+    assert not any(made.log for made in here)
 
 
 def test_make_gives_the_bytes_and_writes_nothing(tmp_path, monkeypatch):

@@ -30,7 +30,7 @@ def simulated(arrays: Mapping[str, NDArray[Any]]) -> "Hash":
         kind = np.dtype(bool).str if SCHEMA[name].dtype == "?" else array.dtype.str  # not as stored
         digest.update(f"{name} {kind} {array.shape}\n".encode())
         for block in _blocks(array):
-            digest.update(block.tobytes())
+            digest.update(np.ascontiguousarray(block).data)
     return digest
 
 

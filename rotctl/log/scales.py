@@ -38,7 +38,7 @@ NAMES = (*(name for name, _ in _NAMES.values()), *CONSTANTS)
 def write_scales(
     file: h5py.File, arrays: Mapping[str, NDArray[Any]], sizes: Mapping[str, int]
 ) -> None:
-    """Label every axis of a log whose datasets are written."""
+    """Label every axis of a log whose datasets are there; `coordinates` are written later."""
     scales = {}
     for dim in (*_NAMES, *CONSTANTS):
         name, source = _NAMES.get(dim, (dim, ""))
@@ -53,6 +53,11 @@ def write_scales(
             axes = np.concatenate([scales[dim] for dim in spec.shape])
             shape = h5py.h5s.create_simple((len(axes),))
             h5py.h5a.create(file[path].id, b"DIMENSION_LIST", _REFERENCES, shape).write(axes)
+
+
+def coordinates(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Scale -> what is along its axis, of those that a log's arrays tell."""
+    return {name: arrays[source] for name, source in _NAMES.values() if source}
 
 
 def _coordinates(dim: str, source: NDArray[Any] | None, sizes: Mapping[str, int]) -> NDArray[Any]:

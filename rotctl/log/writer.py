@@ -4,9 +4,9 @@ The file is made in memory and reaches the disk as plain bytes: a kill before th
 at most a ``.part``, and a full disk is an ordinary ``OSError``, not an HDF5 one.
 """
 
-import io
 import json
 from collections.abc import Mapping
+from functools import lru_cache
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +19,7 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.digest import content_sha256, simulated
-from rotctl.log.scales import write_scales
+from rotctl.log.scales import coordinates, write_scales
 from rotctl.log.schema import (
     ATTRIBUTES,
     GROUPS,
@@ -27,7 +27,6 @@ from rotctl.log.schema import (
     SCHEMA,
     SCHEMA_VERSION,
     WRITER_ATTRIBUTES,
-    DatasetSpec,
     check_layout,
 )
 
@@ -108,26 +107,61 @@ def encode_run(
     root = _root_attributes(attributes)
     root["content_sha256"] = content_sha256(digest or simulated(arrays), root)
 
-    memory = io.BytesIO()
-    with h5py.File(memory, "w") as file:
-        groups = {name: file.create_group(name) for name in GROUPS}
-        for name in SCHEMA:
-            group, _, leaf = name.partition("/")
-            _write_dataset(groups[group], leaf, SCHEMA[name], arrays[name])
-        write_scales(file, arrays, sizes)
+    stored = {name: _stored(arrays[name]) for name in SCHEMA}
+    opened = h5py.h5f.open_file_image(
+        _empty(
+            tuple((a.dtype, a.shape, a.dtype.metadata is not None) for a in stored.values()),
+            tuple(sizes.items()),
+        ),
+        h5py.h5f.FILE_IMAGE_OPEN_RW,
+    )
+    with h5py.File(opened) as file:
+        for name, array in {**stored, **coordinates(arrays)}.items():
+            if array.size:
+                dataset = h5py.h5d.open(opened, name.encode())
+                dataset.write(h5py.h5s.ALL, h5py.h5s.ALL, array)
         for name, value in {**root, "complete": True}.items():
             file.attrs[name] = np.uint8(value) if isinstance(value, bool) else value
-    return memory.getvalue()
+        file.flush()
+        content: bytes = opened.get_file_image()
+    return content
 
 
-def _write_dataset(group: h5py.Group, name: str, spec: DatasetSpec, array: NDArray[Any]) -> None:
+def _stored(array: NDArray[Any]) -> NDArray[Any]:
+    """An array as HDF5 takes it."""
     if array.dtype.kind == "S" and not array.tobytes().isascii():
         array = array.astype(h5py.string_dtype("utf-8", array.dtype.itemsize))
     if array.dtype == bool:  # HDF5 has none, and few know h5py's enum
         array = array.view(np.uint8)
-    dataset = group.create_dataset(name, data=array, track_times=False, **_storage(array))
-    _write_text(dataset, "units", spec.unit)
-    _write_text(dataset, "description", spec.description)
+    return np.require(array, requirements="C")
+
+
+@lru_cache(maxsize=8)
+def _empty(
+    layout: tuple[tuple["np.dtype[Any]", tuple[int, ...], bool], ...],
+    sizes: tuple[tuple[str, int], ...],
+) -> bytes:
+    """A file without data: to make its datasets takes twice as long as to fill them.
+
+    Args:
+        layout: type, shape and whether it is UTF-8, of every dataset in the order of the schema.
+        sizes: of the schema's dimensions.
+    """
+    with h5py.File("empty", "w", driver="core", backing_store=False) as file:
+        groups = {name: file.create_group(name) for name in GROUPS}
+        none = {}
+        for (name, spec), (dtype, shape, _) in zip(SCHEMA.items(), layout, strict=True):
+            group, _, leaf = name.partition("/")
+            dataset = groups[group].create_dataset(
+                leaf, shape, dtype, track_times=False, **_storage(dtype, shape)
+            )
+            _write_text(dataset, "units", spec.unit)
+            _write_text(dataset, "description", spec.description)
+            none[name] = np.zeros(shape, dtype)
+        write_scales(file, none, dict(sizes))
+        file.flush()
+        content: bytes = file.id.get_file_image()
+    return content
 
 
 _TEXT = h5py.h5t.py_create(h5py.string_dtype("utf-8"), logical=True)
@@ -139,18 +173,18 @@ def _write_text(dataset: h5py.Dataset, name: str, text: str) -> None:
     h5py.h5a.create(dataset.id, name.encode(), _TEXT, _SCALAR).write(np.array(text, dtype=object))
 
 
-def _storage(array: NDArray[Any]) -> dict[str, Any]:
+def _storage(dtype: "np.dtype[Any]", shape: tuple[int, ...]) -> dict[str, Any]:
     """Whole rows in chunks of about 1 MiB; HDF5 cannot chunk scalar or empty datasets.
 
     Double precision is stored as it is: the digits of a simulation look random, and gzip would
     spare a tenth of them for half of the time that a log takes.
     """
-    if array.ndim == 0 or array.size == 0:
+    if not shape or not prod(shape):
         return {}
-    row_bytes = array.dtype.itemsize * prod(array.shape[1:])
-    rows = min(len(array), max(1, _CHUNK_BYTES // row_bytes))
-    checked = {"chunks": (rows, *array.shape[1:]), "fletcher32": True}
-    if array.dtype == np.float64:
+    row_bytes = dtype.itemsize * prod(shape[1:])
+    rows = min(shape[0], max(1, _CHUNK_BYTES // row_bytes))
+    checked = {"chunks": (rows, *shape[1:]), "fletcher32": True}
+    if dtype == np.float64:
         return checked
     return {**checked, "compression": "gzip", "compression_opts": _GZIP_LEVEL, "shuffle": True}
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 import mujoco
@@ -60,7 +60,7 @@ def judge(
     asked = dict(commanded)
     if isinstance(criteria, RollingCriteria):
         rolled = rolling.measure(log, criteria, commanded["angular_velocity_commanded"], period)
-        found, reason = asdict(rolled), rolling.failure_reason(rolled, criteria, wanted)
+        found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
         del found["stalled_at"]  # of people's interest in a reason alone
         direction = commanded["angular_velocity_commanded"]
         found |= asdict(appearance.measure(log, mj, direction, period))
@@ -68,14 +68,14 @@ def judge(
         found |= pace.measure(log, means, commanded, criteria.settle)
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
-        found, reason = asdict(stood), standing.failure(stood, criteria, steps * period)
+        found, reason = dict(vars(stood)), standing.failure(stood, criteria, steps * period)
     elif isinstance(criteria, DiveCriteria):
         found, reason = dive.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
-        found, reason = asdict(turned), orientation.failure(turned, criteria, steps * period)
+        found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
     if steps * period < wanted - 1e-6:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:

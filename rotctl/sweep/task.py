@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from rotctl.config import Config
+from rotctl.control import Controller
 from rotctl.run import simulated
 from rotctl.run_folder import EncodedRun
 from rotctl.same import kept
@@ -43,7 +44,7 @@ def carry_out(order: Order) -> EncodedRun:
     """
     parts: dict[str, Any] = dict(zip(NAMES, map(_unpacked, order.parts), strict=True))
     config = Config(**parts)
-    return simulated(config, lambda summary: keep.kept(order.wish, summary["success"]))
+    return simulated(config, lambda summary: keep.kept(order.wish, summary["success"]), _controller)
 
 
 @kept(most=1000)
@@ -51,4 +52,5 @@ def _packed(part: Any) -> bytes:
     return pickle.dumps(part, pickle.HIGHEST_PROTOCOL)
 
 
+_controller = kept(most=8)(Controller)  # one run at a time in a worker
 _unpacked = lru_cache(maxsize=1000)(pickle.loads)
