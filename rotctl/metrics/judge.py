@@ -63,7 +63,7 @@ def judge(
         found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
         del found["stalled_at"]  # of people's interest in a reason alone
         direction = commanded["angular_velocity_commanded"]
-        found |= asdict(appearance.measure(log, mj, direction, period))
+        found |= vars(appearance.measure(log, mj, direction, period))
         means = rolled.angular_velocity_mean, rolled.speed_mean
         found |= pace.measure(log, means, commanded, criteria.settle)
     elif isinstance(criteria, StandingCriteria):

@@ -37,6 +37,17 @@ static void decode(const mjModel* m, const mjContact* k, const double* row, doub
   local[2] = k->friction[1] * (row[2] - row[3]);
 }
 
+// simulation/stepping.py `trouble`: whether there is no warning and all is finite.
+int rotctl_sound(const mjModel* m, const mjData* d) {
+  for (int i = 0; i < mjNWARNING; i++)
+    if (d->warning[i].number) return 0;
+  for (int i = 0; i < m->nq; i++)
+    if (!isfinite(d->qpos[i])) return 0;
+  for (int i = 0; i < m->nv; i++)
+    if (!isfinite(d->qvel[i])) return 0;
+  return 1;
+}
+
 // One physics step has been made; its contacts and forces are still in `d`.
 void rotctl_ground_add(const mjModel* m, const mjData* d, Sums* s) {
   double sum[3] = {0};

@@ -1,5 +1,8 @@
 """Advancing the physics by one control period: an interface, and MuJoCo's own stepping."""
 
+import ctypes
+from collections.abc import Callable
+from functools import lru_cache
 from math import isfinite
 from typing import Protocol
 
@@ -9,6 +12,7 @@ import numpy as np
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.pair_limit import crowded
+from rotctl.native.library import library
 from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces, ground_forces
 
@@ -63,6 +67,7 @@ class MujocoStepper:
         self._substeps = substeps
         self._period = substeps * model.mj.opt.timestep
         self._forces = ground_forces(model.mj)
+        self._sound = _sound()
         self._steps = 0
         self._crowd = ""
 
@@ -88,13 +93,27 @@ class MujocoStepper:
         return self._crowd
 
     def complaint(self, data: mujoco.MjData) -> str:
-        """See `trouble`."""
+        """See `trouble`; mostly it is seen at once that there is none."""
+        late = abs(data.time - self._steps * self._period) > 0.5 * self._period
+        if self._sound and not late and self._sound(self._mj._address, data._address):
+            return ""
         return trouble(data, self._steps, self._period)
 
     def _look(self, data: mujoco.MjData) -> None:
         """At the contacts of a physics step."""
         self._forces.add(data)
         self._crowd = self._crowd or crowded(self._mj, data)
+
+
+@lru_cache(maxsize=1)
+def _sound() -> Callable[[int, int], int] | None:
+    """What C can tell at once, if it is built."""
+    built = library()
+    if built is None:
+        return None
+    function: Callable[[int, int], int] = built.rotctl_sound
+    function.argtypes, function.restype = [ctypes.c_void_p] * 2, ctypes.c_int  # type: ignore[attr-defined]
+    return function
 
 
 def trouble(data: mujoco.MjData, periods: int, period: float) -> str:
