@@ -9,6 +9,7 @@ import pytest
 from rotctl.errors import InputError
 from rotctl.mechanics import model as models
 from rotctl.mechanics.character import Geom
+from rotctl.mechanics.model import acting
 from rotctl.mechanics.momentum import read_momentum
 
 
@@ -190,14 +191,16 @@ def test_massless_geoms_touch_nothing(world):
     shown = Geom(name="hat", size=0.01, start=(0.0, 0.0, 0.2), mass=0.0)
     (head,) = (body for body in world.config.character.bodies if body.name == "head")
     model = rebuilt(world, bodies=with_body(world, "head", geoms=(*head.geoms, shown)))
-    hat = model.mj.geom("hat")
+    shown = mujoco.MjModel.from_xml_string(model.mjcf)
+    hat = shown.geom("hat")
     assert (hat.contype[0], hat.conaffinity[0]) == (0, 0)
-    assert hat.id not in {*model.mj.pair_geom1, *model.mj.pair_geom2}
+    assert hat.id not in {*shown.pair_geom1, *shown.pair_geom2}
+    assert "hat" not in {model.mj.geom(i).name for i in range(model.mj.ngeom)}
     assert model.mass == pytest.approx(world.model.mass, rel=1e-12)
 
 
 def test_model_text_is_the_model(world):
-    again = mujoco.MjModel.from_xml_string(world.model.mjcf)
+    again = acting(world.model.mjcf)
     for name in ("body_mass", "body_inertia", "jnt_range", "actuator_ctrlrange", "geom_size"):
         assert getattr(again, name) == pytest.approx(getattr(world.mj, name), rel=1e-5, abs=1e-7)
     assert again.opt.timestep == pytest.approx(world.mj.opt.timestep, rel=1e-5)

@@ -91,6 +91,7 @@ def test_water_is_lower_than_the_platform_and_stops_nobody():
     ground = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.ground
     assert ground.height(0.0, 0.0) == 0.0
     assert ground.height(0.19, 0.0) == ground.height(5.0, 2.0) == -3.0
-    model = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.mj
+    text = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.mjcf
+    model = mujoco.MjModel.from_xml_string(text)
     water = model.geom("water").id
     assert model.geom_contype[water] == model.geom_conaffinity[water] == 0

@@ -10,6 +10,7 @@ import pytest
 from rotctl.config import load, recorded
 from rotctl.listing import choices
 from rotctl.log import RunLog
+from rotctl.mechanics.model import acting
 from rotctl.report import stored_model
 from rotctl.run import make
 from rotctl.scenario import build, model_of
@@ -36,7 +37,7 @@ def test_the_model_and_the_torques_of_a_log_give_its_states(overrides, tmp_path)
     config, log = logged(tmp_path, *overrides)
     model = mujoco.MjModel.from_xml_string(log.model_xml)
     assert model.opt.timestep == 1.0 / (config.controller.rate * config.physics.substeps)
-    assert different(model, model_of(config).mj) == []
+    assert different(acting(log.model_xml), model_of(config).mj) == []
     assert different(model.opt, model_of(config).mj.opt) == []
     states = zip(log["trajectory/qpos"], log["trajectory/qvel"], strict=True)
     repeat = in_lockstep if "physics=lockstep" in overrides else by_mujoco
@@ -86,7 +87,7 @@ def test_what_is_drawn_is_what_was_simulated(tmp_path):
 
 def test_a_difference_would_be_seen():
     model = model_of(load([])).mj
-    other = mujoco.MjModel.from_xml_string(model_of(load([])).mjcf)
+    other = acting(model_of(load([])).mjcf)
     other.geom_size[3, 0] = np.nextafter(other.geom_size[3, 0], 1.0)
     other.opt.timestep = np.nextafter(other.opt.timestep, 1.0)
     assert different(model, other) == ["geom_size"]

@@ -15,7 +15,8 @@ from rotctl.simulation.episode import Episode
 @pytest.fixture(scope="module")
 def adult():
     config = load([])
-    return build(config.character, config.terrain, config.physics, config.controller.rate).mj
+    model = build(config.character, config.terrain, config.physics, config.controller.rate)
+    return mujoco.MjModel.from_xml_string(model.mjcf)
 
 
 def test_visual_geoms_weigh_and_touch_nothing(adult):

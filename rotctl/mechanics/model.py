@@ -164,17 +164,24 @@ def _compiled(spec: mujoco.MjSpec) -> tuple[mujoco.MjModel, str]:
     """The model, and the text that says all of it.
 
     MuJoCo writes six digits a number. So the model is the one that the text describes, and not
-    the other way round. The step alone is written in full, as 1/240 s has no six digits. What is
-    only looked at touches nothing and weighs nothing, so it is not simulated: the bits are the
-    same, and a physics step costs a twentieth less.
+    the other way round. The step alone is written in full, as 1/240 s has no six digits.
     """
     spec.compile()
     step = f'timestep="{float(spec.option.timestep)!r}"'  # left out if it is MuJoCo's own
     text = re.sub(r'timestep="[^"]*"', step, spec.to_xml(), count=1)
-    acting = mujoco.MjSpec.from_string(text)
-    for geom in [g for g in acting.geoms if not (g.contype or g.conaffinity)]:
-        acting.delete(geom)
-    return acting.compile(), text
+    return acting(text), text
+
+
+def acting(mjcf: str) -> mujoco.MjModel:
+    """The model of a text without what is only looked at.
+
+    That touches nothing and weighs nothing: the motion has the same bits, and a physics step
+    costs a twentieth less.
+    """
+    spec = mujoco.MjSpec.from_string(mjcf)
+    for geom in [geom for geom in spec.geoms if not (geom.contype or geom.conaffinity)]:
+        spec.delete(geom)
+    return spec.compile()
 
 
 def _check(mj: mujoco.MjModel, character: Character) -> None:
