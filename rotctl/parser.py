@@ -16,6 +16,7 @@ examples:
   rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
   rotctl run controller.pose.weight=0.5
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
+  rotctl judge sweeps/a criteria.stall_time=2     verdicts by other criteria, nothing simulated
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
   rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen
@@ -41,8 +42,8 @@ COMMANDS = (
     *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
     *(runs.add_list, runs.add_show, folders.add_new, folders.add_ls, folders.add_diff),
     *(logs.add_inspect, logs.add_verify, runs.add_bench),
-    *(studies.add_sweep, studies.add_summarise, studies.add_report, studies.add_tune),
-    *(clips.add_import, clips.add_author, clips.add_preview),
+    *(studies.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
+    *(studies.add_tune, clips.add_import, clips.add_author, clips.add_preview),
 )
 NO_LOG = "an unfinished run leaves no log"
 

@@ -1,8 +1,9 @@
 """One config to one log to one summary row."""
 
+import json
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,18 +11,20 @@ from typing import Any
 import numpy as np
 
 from rotctl import files
-from rotctl.config import Config, to_yaml
+from rotctl.config import Config, to_dict, to_yaml
 from rotctl.control import Controller
+from rotctl.documents import from_yaml
 from rotctl.errors import LogError
-from rotctl.log import LOG_NAME, TrajectoryBuffer, collect, encode_run
+from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, collect, encode_run
 from rotctl.log.digest import simulated as hashed
+from rotctl.log.schema import MODEL_PATH
 from rotctl.log.writer import whole
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
-from rotctl.scenario import Making, Scenario, build
+from rotctl.scenario import Making, Scenario, acting, build
 from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import simulate
-from rotctl.summary import Summary, broke_down, summarise
+from rotctl.summary import Summary, broke_down, judged_again, summarise
 
 
 @dataclass(frozen=True)
@@ -71,6 +74,9 @@ def run(
     if not force and os.path.lexists(folder / LOG_NAME):
         try:
             log, trajectory = open_published(folder, scenario.run_id)
+            if not same_criteria(from_yaml("config", log.config_yaml), config):
+                publish(by_other_criteria(log, config, trajectory), folder)
+                log = RunLog.open(folder / LOG_NAME)
             return Result(folder, log.outcome, True, trajectory)
         except LogError as error:
             replaced = str(error)
@@ -80,6 +86,35 @@ def run(
     notices = (scenario.controller.notice, scenario.stepper.notice)
     notice = "; ".join(filter(None, notices))
     return Result(folder, encoded.summary, False, encoded.trajectory, replaced, notice)
+
+
+def same_criteria(data: Mapping[str, Any], config: Config) -> bool:
+    """Whether the plain data of a config have the criteria of another one."""
+    there, here = acting(data.get("criteria")), acting(to_dict(config)["criteria"])
+    return json.dumps(there) == json.dumps(here)
+
+
+def by_other_criteria(log: RunLog, config: Config, trajectory: str) -> EncodedRun:
+    """A logged run with another verdict: what was simulated stays as it is.
+
+    Raises:
+        LogError: the log is of another version.
+        InputError: such criteria do not judge such a run.
+    """
+    if log.names != tuple(SCHEMA):
+        raise LogError(f"{log.path}: is of an older schema, and has another verdict there")
+    summary, text = judged_again(log, config), to_yaml(config)
+    kept = {name: log.attributes[name] for name in ("versions", "machine", "git_commit")}
+    source = {**kept, "git_dirty": log.attributes["git_dirty"]}
+    rest = {name: log.attributes[name] for name in ("run_id", "seed", "wall_time")}
+    arrays = log.arrays()
+    del arrays[MODEL_PATH]
+    content = encode_run(
+        arrays,
+        model_xml=log.model_xml,
+        attributes={**source, **rest, "config": text, "outcome": summary},
+    )
+    return EncodedRun(summary, content, text, source, float(rest["wall_time"]), trajectory)
 
 
 def make(config: Config) -> EncodedRun:

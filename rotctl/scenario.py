@@ -74,7 +74,7 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     control = config.controller
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     model = _varied(config, Variation(config.plant, plant)) if config.plant.differs else known
-    _check(config, known)
+    require_fit(config, known)
     behaviour = config.behaviour.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
     controller = controller_of(known, control)
@@ -102,8 +102,12 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     )
 
 
-def _check(config: Config, model: Model) -> None:
-    """Raises InputError where criteria judge other motions or bodies, or a push comes too late."""
+def require_fit(config: Config, model: Model) -> None:
+    """See that the parts of a config fit together.
+
+    Raises:
+        InputError: criteria judge other motions or bodies, or a push comes too late.
+    """
     rolls = isinstance(config.behaviour, RollingSettings)
     if rolls != (config.criteria.kind == "rolling"):
         wanted = (
@@ -165,13 +169,17 @@ def _world(config: Config) -> tuple[Physics, float, int, float]:
 def run_id(config: Config, model: Model) -> str:
     """Hash of what acts: the config, the log's schema version, the model and the clip followed.
 
-    What only describes or colours does not act.
+    What only describes or colours does not act, nor do the criteria: they judge what was simulated.
 
     Raises:
         InputError: there is no such clip.
     """
     parts = {
-        "config": {name: _hash_of_part(part) for name, part in to_dict(config).items()},
+        "config": {
+            name: _hash_of_part(part)
+            for name, part in to_dict(config).items()
+            if name != "criteria"
+        },
         "schema": SCHEMA_VERSION,
         "model": _hash_without_looks(model.mjcf),
     }
@@ -187,7 +195,7 @@ def _hash(plain: Any) -> str:
 
 @kept(most=1000)
 def _hash_of_part(part: Any) -> str:
-    return _hash(_acting(part))
+    return _hash(acting(part))
 
 
 @lru_cache(maxsize=8)
@@ -200,8 +208,8 @@ def _hash_of_clip(reference: ReferenceSettings) -> str:
     return _hash(asdict(load_clip(reference.clip)))
 
 
-def _acting(part: Any) -> Any:
+def acting(part: Any) -> Any:
     """Plain data without the keys that act on nothing."""
     if isinstance(part, dict):
-        return {key: _acting(value) for key, value in part.items() if key not in DESCRIPTIVE}
-    return [_acting(value) for value in part] if isinstance(part, list | tuple) else part
+        return {key: acting(value) for key, value in part.items() if key not in DESCRIPTIVE}
+    return [acting(value) for value in part] if isinstance(part, list | tuple) else part

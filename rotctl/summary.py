@@ -4,12 +4,15 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rotctl.log import TrajectoryBuffer
+from rotctl.config import Config
+from rotctl.log import RunLog, TrajectoryBuffer
+from rotctl.mechanics.model import Model
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
-from rotctl.scenario import Scenario
+from rotctl.scenario import Scenario, model_of, require_fit
 
 Summary = dict[str, Any]
+BROKE_DOWN, LEFT = "physics", "left the ground"  # how reasons begin that no criteria give
 
 
 def summarise(
@@ -22,21 +25,36 @@ def summarise(
         ending: what ended it early; empty if nothing did.
         wall: the time the loop took [s].
     """
-    config = scenario.config
-    period = 1.0 / config.controller.rate
     log = run.arrays() if isinstance(run, TrajectoryBuffer) else run
-    judgement = judge(
-        log,
-        config.criteria,
-        config.behaviour.commanded,
-        period,
-        config.duration,
-        scenario.model.mj,
-    )
+    return _judged(scenario.config, scenario.run_id, scenario.model, log, ending, wall)
+
+
+def judged_again(log: RunLog, config: Config) -> Summary:
+    """The summary row of a logged run by the criteria of a config that is its own otherwise.
+
+    Raises:
+        LogError: the log is damaged.
+        InputError: such criteria do not judge such a run.
+    """
+    model = model_of(config)
+    require_fit(config, model)
+    reason = str(log.outcome["failure_reason"])
+    ending = reason if reason.startswith((BROKE_DOWN, LEFT)) else ""
+    wall = float(log.attributes["wall_time"])
+    arrays = log.arrays()
+    return _judged(config, str(log.attributes["run_id"]), model, arrays, ending, wall)
+
+
+def _judged(
+    config: Config, run_id: str, model: Model, log: Arrays, ending: str, wall: float
+) -> Summary:
+    period = 1.0 / config.controller.rate
+    commanded, wanted = config.behaviour.commanded, config.duration
+    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj)
     columns = judgement.columns
     reason = ending or judgement.reason
     row = {
-        "run_id": scenario.run_id,
+        "run_id": run_id,
         "behaviour": config.behaviour.name,
         "criteria": config.criteria.kind,
         "seed": config.seed,
@@ -51,5 +69,5 @@ def summarise(
 
 def broke_down(summary: Mapping[str, Any]) -> bool:
     """Whether a run itself failed, as opposed to the roll."""
-    physics = str(summary["failure_reason"]).startswith("physics")
+    physics = str(summary["failure_reason"]).startswith(BROKE_DOWN)
     return bool(summary["solver_failures"]) or physics

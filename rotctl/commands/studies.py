@@ -86,6 +86,45 @@ def sweep(arguments: argparse.Namespace) -> int:
     return 1 if tally.broken else 0
 
 
+def add_judge(commands: Commands) -> None:
+    """Add `judge`."""
+    command = commands.add_parser(
+        "judge",
+        help="verdicts by other criteria, without simulation",
+        description="Judge all runs below DIR that have logs by other criteria, such as "
+        "criteria=landing or criteria.stall_time=2: verdicts and metrics again, one row a run, in "
+        "DIR/judged.csv, beside the verdicts that were. Logs and rows stay as they are.",
+    )
+    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help="of criteria alone")
+    command.add_argument("--by", metavar="KEY,KEY", help="columns to group by, as in summarise")
+    command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
+    command.set_defaults(command=judge)
+
+
+def judge(arguments: argparse.Namespace) -> int:
+    """Judge runs by other criteria."""
+    from contextlib import closing
+
+    from rotctl import files
+    from rotctl.results.groups import grouped, markdown
+    from rotctl.sweep.judging import criteria, judge
+    from rotctl.sweep.workers import make_engine
+
+    wanted = criteria(arguments.overrides)
+    with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
+        found = judge(arguments.folder, wanted, engine, shown.update)
+    groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
+    print(printable(markdown(groups)), end="\n\n")
+    print(f"{found.lost} successes are none by these criteria, {found.won} others are")
+    path = arguments.folder / "judged.csv"
+    files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
+    print(path)
+    for note in [*found.table.notes, *groups.notes]:
+        print(one_line(note), file=sys.stderr)
+    return 0
+
+
 def add_summarise(commands: Commands) -> None:
     """Add `summarise`."""
     command = commands.add_parser(

@@ -76,6 +76,15 @@ class RunLog(Mapping[str, NDArray[Any]]):
         with untrusted.opened(self.path, linked=True) as file:
             return self._read(file, name)
 
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Reads all datasets, in one go.
+
+        Raises:
+            LogError: one is damaged.
+        """
+        with untrusted.opened(self.path, linked=True) as file:
+            return {name: self._read(file, name) for name in self.names}
+
     def __contains__(self, name: object) -> bool:
         """Whether there is such a dataset; logs of older schema versions have fewer."""
         return name in self.names

@@ -8,12 +8,13 @@ from typing import Any
 
 from rotctl.config import Config
 from rotctl.errors import InputError, LogError
-from rotctl.log import LOG_NAME, collect
+from rotctl.log import LOG_NAME, RunLog, collect
 from rotctl.results import index
 from rotctl.results.code import code_of, code_version
 from rotctl.results.configs import config_of
 from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
-from rotctl.run_folder import has_all_beside, open_published
+from rotctl.run import by_other_criteria, same_criteria
+from rotctl.run_folder import has_all_beside, open_published, publish
 from rotctl.scenario import model_of, run_id
 from rotctl.summary import Summary
 from rotctl.sweep.keep import Keep, kept
@@ -67,7 +68,12 @@ def planned(points: Iterable[Point]) -> list[Planned]:
         config = point.config
         name = run_id(config, model_of(config))
         always = {"behaviour": config.behaviour.name, "seed": config.seed}
-        runs.setdefault(name, Planned(name, config, always | point.values))
+        run = runs.setdefault(name, Planned(name, config, always | point.values))
+        if run.config.criteria != config.criteria:
+            raise InputError(
+                f"{name}: two points differ in their criteria alone, which simulate nothing; sweep "
+                "without them, then rotctl judge DIR criteria=..."
+            )
     return list(runs.values())
 
 
@@ -96,7 +102,7 @@ def plan(
     wish = keep.of(run.run_id for run in runs)
     for run in runs:
         wanted = wish(run.run_id)
-        row = _there(run.run_id, folder, wanted, found)
+        row = _there(run, folder, wanted, found)
         code = code_of(row.origin) if row else ""
         if row and code != this_code and strict:
             found.replaced.append(f"{folder / run.run_id / LOG_NAME}: made by {code}")
@@ -117,16 +123,25 @@ def suffices(row: Row, wish: str) -> bool:
     return row.log is None and not kept(wish, bool(row.outcome["success"]))
 
 
-def _there(run_id: str, folder: Path, wish: str, found: Plan) -> Row | None:
-    """The row of a run that is done; None if it is to be done, also for its log's sake."""
+def _there(run: Planned, folder: Path, wish: str, found: Plan) -> Row | None:
+    """The row of a run that is done; None if it is to be done, also for its log's sake.
+
+    If it was judged by other criteria, it gets another verdict.
+    """
+    run_id = run.run_id
     path, row = folder / run_id / LOG_NAME, found.index.rows.get(run_id)
     lies = index.stamp(path)
+    if row and not same_criteria(row.config, run.config):
+        row = None
     if row and lies == row.log and (has_all_beside(path.parent) if lies else suffices(row, wish)):
         return row
     if not os.path.lexists(path):
         return None
     try:
         log, trajectory = open_published(path.parent, run_id)
+        if not same_criteria(config_of(log.config_yaml), run.config):
+            publish(by_other_criteria(log, run.config, trajectory), path.parent)
+            log, lies = RunLog.open(path, linked=False), index.stamp(path)
         origin = {name: log.attributes[name] for name in ORIGIN}
         code_version(origin)
         config, wall = config_of(log.config_yaml), float(log.attributes["wall_time"])

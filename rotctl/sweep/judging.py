@@ -1,0 +1,161 @@
+"""Verdicts and measures once more, by other criteria, out of the logs: nothing is simulated."""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from rotctl.checked import unknown_key
+from rotctl.config import check, composed
+from rotctl.errors import InputError
+from rotctl.log import RunLog
+from rotctl.overrides import assigned, single
+from rotctl.plain import NOTHING, Way, exchanged, way
+from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
+from rotctl.results.table import Table, tabulated
+from rotctl.summary import Summary, judged_again
+from rotctl.sweep.engines import Engine, Failure
+
+NOT_JUDGED = "not judged"
+NO_LOG = "its log was not kept; rotctl sweep --keep all makes it again"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Runs by other criteria.
+
+    Attributes:
+        table: with a column `success_before`.
+        lost, won: how many verdicts have changed.
+    """
+
+    table: Table
+    lost: int
+    won: int
+
+
+@dataclass(frozen=True)
+class Question:
+    """A log, and its config with other criteria."""
+
+    log: Path
+    config: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """What is asked for.
+
+    Attributes:
+        base: criteria in place of a run's own; None: its own.
+        changes: values that are set on them.
+    """
+
+    base: Mapping[str, Any] | None
+    changes: Sequence[tuple[Way, Any]]
+
+    def of(self, own: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The criteria for a run with these of its own.
+
+        Raises:
+            InputError: they have no such key.
+        """
+        found: Any = own if self.base is None else self.base
+        if not isinstance(found, Mapping):
+            raise InputError("its config has no criteria")
+        for place, value in self.changes:
+            changed = exchanged(found, place, value)
+            if changed is NOTHING:
+                raise InputError(unknown_key(f"criteria.{place[0]}", "criteria", list(found)))
+            found = changed
+        return dict(found)
+
+
+def criteria(overrides: Sequence[str]) -> Criteria:
+    """What overrides such as `criteria=landing criteria.tilt=20` ask for.
+
+    Raises:
+        InputError: one is about something else, which would have to be simulated.
+    """
+    base, changes = None, []
+    for text in overrides:
+        found = assigned(single(text))
+        if found and found.key == "criteria":
+            base = composed([text])["criteria"]
+        elif found and found.key.startswith("criteria."):
+            changes.append((way(found.key)[1:], found.value))
+        else:
+            raise InputError(f"{text}: judge takes criteria=CHOICE and criteria.KEY=VALUE alone")
+    if base is None and not changes:
+        raise InputError("no criteria; such as criteria=landing, or criteria.stall_time=2")
+    return Criteria(base, changes)
+
+
+def answer(question: Question) -> Summary:
+    """The summary row of a logged run by its new criteria.
+
+    Raises:
+        LogError: the log cannot be read.
+        InputError: such criteria do not judge such a run.
+    """
+    return judged_again(RunLog.open(question.log, linked=False), check(dict(question.config)))
+
+
+def judge(
+    folder: Path,
+    wanted: Criteria,
+    engine: Engine,
+    progress: Callable[[], object] = lambda: None,
+) -> Judged:
+    """Judge all runs below a folder that have logs.
+
+    Args:
+        progress: called after every run.
+
+    Raises:
+        InputError: there are none, or none has criteria with such keys.
+    """
+    runs, notes = stored_runs(folder)
+    asked: list[tuple[StoredRun, Question]] = []
+    found: dict[str, StoredRun] = {run.run_id: run for run in runs}
+    for run in runs:
+        if run.status != DONE:
+            continue
+        if not run.log:
+            found[run.run_id] = _without(run, NO_LOG)
+            continue
+        try:
+            config = {**run.config, "criteria": wanted.of(run.config.get("criteria", {}))}
+        except InputError as error:
+            found[run.run_id] = _without(run, str(error))
+            continue
+        asked.append((run, Question(folder / run.log, config)))
+    if not asked:
+        reasons = [run.reason for run in found.values() if run.reason]
+        raise InputError(f"{folder}: no run can be judged: {(reasons or ['none is done'])[0]}")
+    before = {run.run_id: bool(run.outcome["success"]) for run, _ in asked}
+    questions = [question for _, question in asked]
+    with closing(engine.map(answer, questions, retries=2)) as results:
+        for index, result in results:
+            run = asked[index][0]
+            if isinstance(result, Failure):
+                found[run.run_id] = _without(run, result.reason)
+            else:
+                found[run.run_id] = replace(run, outcome=result, config=questions[index].config)
+            progress()
+    after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
+    untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
+    notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]
+    table = tabulated(list(found.values()), notes)
+    table.rows["success_before"] = table.rows["run_id"].map(before)
+    return Judged(
+        table,
+        lost=sum(before[name] and not success for name, success in after.items()),
+        won=sum(success and not before[name] for name, success in after.items()),
+    )
+
+
+def _without(run: StoredRun, reason: str) -> StoredRun:
+    return replace(run, status=NOT_JUDGED, reason=reason, outcome={}, code="")

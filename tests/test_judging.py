@@ -1,0 +1,121 @@
+"""Criteria are no part of what is simulated: a run has one id, and as many verdicts as wanted."""
+
+import csv
+import io
+import json
+
+import pytest
+from here import Here, swept, without_processes
+from sweep_cli import logs
+
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.log import RunLog
+from rotctl.results.index import read
+from rotctl.run import run
+from rotctl.scenario import model_of, run_id
+from rotctl.sweep.judging import criteria, judge
+from rotctl.sweep.plan import planned
+from rotctl.sweep.points import points
+
+GRID = ("duration=2", "seed=range(0,2)")
+STRICT = "criteria.stall_time=0.1"  # [s] nobody rolls a tenth of a revolution in as little
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A sweep to be looked at only."""
+    return swept(tmp_path_factory.mktemp("made") / "sweep", *GRID)
+
+
+def identity(*overrides):
+    config = load(list(overrides))
+    return run_id(config, model_of(config))
+
+
+def simulated(log):
+    return RunLog.open(log).verify()
+
+
+def test_criteria_are_not_in_the_run_id_and_all_else_is():
+    assert identity("seed=1") == identity("seed=1", STRICT)
+    assert identity("behaviour=stand") == identity("behaviour=stand", "criteria=landing")
+    assert identity("seed=1") != identity("seed=2")
+
+
+@pytest.mark.parametrize("strict", [STRICT, "criteria.travel=[5,6]"])
+def test_the_verdict_is_the_one_that_a_run_with_those_criteria_gets(made, tmp_path, strict):
+    found = judge(made, criteria([strict]), Here())
+    for row in found.table.rows.to_dict("records"):
+        truth = run(load(["duration=2", f"seed={row['seed']}", strict]), tmp_path).summary
+        assert (row["success"], row["failure_reason"]) == (False, truth["failure_reason"])
+        assert row["success_before"]
+        assert row["revolutions"] == truth["revolutions"]
+    assert (found.lost, found.won) == (2, 0)
+
+
+def test_the_command_leaves_logs_and_rows_as_they_are(made, capsys, monkeypatch):
+    without_processes(monkeypatch)
+    before = {log: log.read_bytes() for log in logs(made)}, (made / "runs.jsonl").read_bytes()
+    assert main(["judge", str(made), STRICT]) == 0
+    stdout, stderr = capsys.readouterr()
+    assert "\n2 successes are none by these criteria, 0 others are\n" in stdout
+    assert stderr == ""
+    assert ({log: log.read_bytes() for log in logs(made)}, (made / "runs.jsonl").read_bytes()) == (
+        before
+    )
+    rows = list(csv.DictReader(io.StringIO((made / "judged.csv").read_text())))
+    assert [(row["success"], row["success_before"]) for row in rows] == [("False", "True")] * 2
+
+
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        (["seed=1"], "seed=1: judge takes criteria=CHOICE and criteria.KEY=VALUE alone"),
+        ([], "no criteria; such as criteria=landing, or criteria.stall_time=2"),
+        (["criteria=none"], 'criteria="none": no such choice; valid: '),
+        (["criteria.no=1"], "no run can be judged: unknown key 'criteria.no'; valid keys under"),
+    ],
+)
+def test_what_it_does_not_take_is_one_line(made, capsys, monkeypatch, overrides, said):
+    without_processes(monkeypatch)
+    assert main(["judge", str(made), *overrides]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+def test_runs_that_cannot_be_judged_are_told(tmp_path, capsys, monkeypatch):
+    swept(tmp_path, *GRID, "--keep", "sample:1")
+    without_processes(monkeypatch)
+    assert main(["judge", str(tmp_path), STRICT]) == 0
+    assert "1 runs not judged: its log was not kept; rotctl sweep" in capsys.readouterr().err
+    assert main(["judge", str(tmp_path), "criteria=standing"]) == 0
+    stdout, stderr = capsys.readouterr()
+    assert "criteria=standing does not judge behaviour=forward_roll_1" in stderr
+
+
+def test_a_sweep_with_other_criteria_judges_what_is_there(tmp_path):
+    swept(tmp_path, *GRID)
+    before = [simulated(log) for log in logs(tmp_path)]
+    swept(tmp_path, *GRID, STRICT)
+    assert [simulated(log) for log in logs(tmp_path)] == before
+    for log in logs(tmp_path):
+        outcome = RunLog.open(log).outcome
+        assert not outcome["success"]
+        assert json.loads(log.with_name("summary.json").read_text()) == outcome
+        assert dict(read(tmp_path).rows[log.parent.name].outcome) == outcome
+
+
+def test_a_run_with_other_criteria_is_judged_and_not_simulated(tmp_path):
+    first = run(load(["duration=2", "seed=1"]), tmp_path)
+    second = run(load(["duration=2", "seed=1", STRICT]), tmp_path)
+    assert (first.summary["success"], second.summary["success"]) == (True, False)
+    assert second.already_there
+    assert first.trajectory == second.trajectory == simulated(second.folder / "run.h5")
+
+
+def test_points_that_differ_in_criteria_alone_are_refused():
+    with pytest.raises(InputError, match="two points differ in their criteria alone"):
+        planned(points([["seed=1", "criteria.stall_time=1,2"]]))
