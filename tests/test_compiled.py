@@ -8,13 +8,14 @@ import pytest
 from both import along
 from questions import Asking, any_task
 
-from rotctl.config import load
+from rotctl.config import check, load, to_dict
 from rotctl.control import Controller, compiled, literal
 from rotctl.control.compiled import CompiledStep
 from rotctl.control.kinds import KINDS, Kind, Rows
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import collect
 from rotctl.mechanics.state import read
+from rotctl.plain import put, way
 from rotctl.scenario import build
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
@@ -39,7 +40,7 @@ def cost(scenario, asked, decision):
     poses = np.array((command.pose_a, command.pose_b))
     torques = PoseTracker(model, 1.0 / settings.rate).torques(state, poses, command.pose)
     stack = collect(model, state, command, settings, torques, asked.blend)
-    stack = stack.subset(decision.used[~command.held_out[state.contacts.body]])
+    stack = stack.subset(decision.used[command.candidates(state)])
     force = np.einsum("mij,mj->mi", stack.frame, decision.force[decision.used]).ravel()
     M, pushed = np.zeros((model.mj.nv, model.mj.nv)), stack.jacobian.T @ force - state.bias
     mujoco.mj_fullM(model.mj, data, M)
@@ -101,6 +102,18 @@ def test_same_torques_and_contacts_as_the_reference(overrides):
     assert limited > 0
     if "controller.supervisor=none" not in overrides:
         assert dropped > 0
+
+
+def test_heels_are_held_out_alike():
+    """Who stands on the front of the feet, pushed."""
+    data = to_dict(load(["seed=2", "behaviour=stand", "disturbance=push"]))
+    config = check(put(data, way("behaviour.stages[0].toes"), ["foot"]))
+    held_out = 0
+    for asked in along(build(config), 60):
+        assert asked.fast.used.tolist() == asked.slow.used.tolist()
+        assert asked.fast.torque == pytest.approx(asked.slow.torque, abs=100.0 * EXACT)
+        held_out += int((~asked.command.candidates(asked.expected)).sum())
+    assert held_out > 20
 
 
 @pytest.mark.parametrize(

@@ -181,6 +181,26 @@ def test_a_head_held_out_of_control_is_never_used(world, steps):
         assert not step.decision.used[on_head].any()
 
 
+def test_what_lies_behind_is_held_out_alone(world, supported):
+    """A line across the middle of a body's contacts: those behind it are not candidates."""
+    split = 0
+    for step in supported[:40]:
+        state, command = world.state(step), step.command
+        usual, contacts = command.candidates(state), state.contacts
+        mj_data, first = state.data, contacts.body[0]
+        places = contacts.position - mj_data.xpos[first]
+        along = (mj_data.xmat[first].reshape(3, 3).T @ places.T)[0]
+        behind = np.full(world.mj.nbody, -np.inf)
+        behind[first] = line = np.mean(along[contacts.body == first]) - 1e-9
+        ahead = (contacts.body != first) | (along >= line)
+        changed = command._replace(behind=behind)
+        assert (changed.candidates(state) == usual & ahead).all()
+        decision = Controller(world.model, world.settings).decide(state, changed, step.blend)
+        assert not decision.used[~ahead].any()
+        split += not ahead.all()
+    assert split > 3
+
+
 def test_a_contact_held_out_of_control_changes_nothing(world):
     """Blind to it: the same torques as if it were not there."""
     state, step = head_stand(world)

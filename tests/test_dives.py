@@ -95,3 +95,17 @@ def test_water_is_lower_than_the_platform_and_stops_nobody():
     model = mujoco.MjModel.from_xml_string(text)
     water = model.geom("water").id
     assert model.geom_contype[water] == model.geom_conaffinity[water] == 0
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "target", "height"), [("dive_forward", 540, 10), ("dive_backward", -180, 3)]
+)
+def test_other_dives_enter_straight_too(behaviour, target, height):
+    """Of two starts at least one; of others, nearly all."""
+    entered = 0
+    for seed in (2002, 2003):
+        turns = [f"behaviour.target_excursion={target}", f"terrain.height={height}"]
+        config = load([f"behaviour={behaviour}", f"seed={seed}", "duration=4.5", *turns])
+        log = in_memory(build(config))[0].arrays()
+        entered += not dive.judge(log, config.criteria, float(target), PERIOD)[1]
+    assert entered >= 1

@@ -51,6 +51,16 @@ def test_most_starts_stand(flip):
     assert stood >= 2
 
 
+def test_a_front_flip_stands_from_most_starts():
+    """As above."""
+    stood = 0
+    for seed in (2001, 2002, 2003):
+        config = load(["behaviour=front_flip", f"seed={seed}", "plant=varied", "duration=6"])
+        buffer, ending = in_memory(build(config))
+        stood += not ending and not judge_flip(buffer.arrays(), config.criteria, 360.0, PERIOD)[1]
+    assert stood >= 2
+
+
 def test_the_flight_is_as_long_as_its_speed_makes_it(flip):
     """t = (v + sqrt(v^2 + 2 g (z0 - z1))) / g, of what was simulated."""
     _, log = flip

@@ -11,7 +11,7 @@ of shape from here to the landing pose makes by itself. Shapes lie on one line: 
 fully tucked, 0 in the landing pose and -1 stretched.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, copysign, pi, radians, sqrt, tau
 from typing import TypeVar
 
@@ -22,7 +22,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.landing import Contact, Landing, LandingSettings
 from rotctl.behaviours.scene import Scene
-from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, lowest_and_highest
+from rotctl.errors import InputError
+from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
 from rotctl.motion import Turn, make_pose
@@ -33,6 +34,8 @@ AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulate
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
 HALVINGS = 14  # of the amounts that are possible: 0.0001
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
+TUCK = "tuck"  # the shape that every flight has
+ROUNDING = 1e-6  # [m]
 LEAST_TIME = 1e-3  # [s] to the landing
 SETTLING = 4.0  # [periods] in which the amount comes near, so that it does not overshoot
 
@@ -61,6 +64,7 @@ class FlightSettings:
 
     Attributes:
         tuck: tightest pose, by joint name [rad]; stretch: longest.
+        shapes: that may be flown in its place, by name: their tightest poses.
         tightest, longest: shares of the way to them that it may go [-].
         opening: to the landing pose begins so long before it [s].
         change: from the landing pose to the tuck, or from the pose at take-off to the line of
@@ -76,6 +80,7 @@ class FlightSettings:
     change: Positive
     tightest: Fraction = 1.0
     longest: Fraction = 1.0
+    shapes: dict[str, dict[str, Turn]] = field(default_factory=dict)
     entry: EntrySettings | None = None
     feet: LandingSettings | None = None
     coasting: NonNegative = 0.0
@@ -83,6 +88,10 @@ class FlightSettings:
     def __post_init__(self) -> None:
         if (self.entry is None) == (self.feet is None):
             raise ValueError("give either entry or feet, not both and not neither")
+
+    def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
+        """Of a shape, by joint name [rad]; None if there is no such shape."""
+        return self.tuck if shape == TUCK else self.shapes.get(shape)
 
 
 @dataclass(frozen=True)
@@ -108,7 +117,13 @@ class Flight:
     """The regulator of one run's flight."""
 
     def __init__(
-        self, settings: FlightSettings, model: Model, frame: Frame, target: float, key: str
+        self,
+        settings: FlightSettings,
+        model: Model,
+        frame: Frame,
+        target: float,
+        key: str,
+        shape: str = TUCK,
     ) -> None:
         """Tabulate inertia over the shapes.
 
@@ -116,21 +131,29 @@ class Flight:
             frame: of the behaviour.
             target: to turn [rad]; its sign is the sense.
             key: where the settings stand.
+            shape: that it flies in.
 
         Raises:
-            InputError: a joint or a body is not there.
+            InputError: a joint, a body or a shape is not there.
         """
+        tightest = settings.tightest_pose(shape)
+        if tightest is None:
+            valid = ", ".join((TUCK, *settings.shapes))
+            raise InputError(f"behaviour.shape={shape}: no such shape; valid: {valid}")
         self._settings, self._model, self._frame = settings, model, frame
         self._axis = axis = frame.trunk_axis
         self._target, self._sense = target, 1.0 if target >= 0.0 else -1.0
         self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
-        self._tuck = make_pose(model, settings.tuck, f"{key}.tuck")
+        self._tuck = make_pose(model, tightest, f"{key}.{shape}")
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
         self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
         if settings.entry:
             self._usual = self._entry(settings.entry, f"{key}.entry")
         elif self._feet:
             self._usual = self._feet.at(0.0)
+        landing = settings.entry or settings.feet
+        assert landing  # as the settings ask for
+        self.bodies = landing.bodies
         self._shapes = Shapes(model)
         self._slowness = np.array(
             [1.0 / self._shapes.inertia(self.pose(a, self._usual), axis) for a in AMOUNTS.tolist()]
@@ -138,15 +161,48 @@ class Flight:
 
     def _entry(self, entry: EntrySettings, key: str) -> Contact:
         """The body as it lands."""
-        mj, data = self._model.mj, mujoco.MjData(self._model.mj)
         attitude, pose = radians(entry.attitude), make_pose(self._model, entry.pose, f"{key}.pose")
+        data = self._landed(attitude, pose)
+        low = self._lowest(data, body_ids(self._model.mj, entry.bodies, f"{key}.bodies"))
+        return Contact(attitude, pose, 0.0, float(data.subtree_com[ROOT_BODY, 2]) - low)
+
+    def _landed(self, attitude: float, pose: Array) -> mujoco.MjData:
+        """The body at the target and past it by an attitude [rad], in a pose (nu,) [rad]."""
+        mj, data = self._model.mj, mujoco.MjData(self._model.mj)
         data.qpos[3:7] = quaternion_from_rotation_vector((self._target + attitude) * self._axis)
         data.qpos[self._model.angles] = pose
         mujoco.mj_kinematics(mj, data)
         mujoco.mj_comPos(mj, data)
-        bodies = np.isin(mj.geom_bodyid, body_ids(mj, entry.bodies, f"{key}.bodies"))
-        low, _ = lowest_and_highest(mj, data, bodies & (mj.geom_contype > 0))
-        return Contact(attitude, pose, 0.0, float(data.subtree_com[ROOT_BODY, 2]) - low)
+        return data
+
+    def _lowest(self, data: mujoco.MjData, bodies: list[int]) -> float:
+        """Lowest z of what is solid of these bodies [m]."""
+        mj = self._model.mj
+        chosen = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
+        return lowest_and_highest(mj, data, chosen)[0]
+
+    def lands(self) -> bool:
+        """Whether what is to land is lowest after the turn that is the target."""
+        data, mj = self._landed(self._usual.attitude, self._usual.pose), self._model.mj
+        own = np.flatnonzero(is_character(mj)).tolist()
+        landing = body_ids(mj, self.bodies, "behaviour.stages.flight.bodies")
+        return self._lowest(data, landing) <= self._lowest(data, own) + ROUNDING
+
+    def least_momentum(self, turns: float, gone: float, time: float) -> float:
+        """About left, that makes a turn in the tightest shape [kg m2/s].
+
+        Args:
+            turns: from upright to the landing, in the sense of the flight; gone: of that at
+                take-off [rad].
+            time: in the air [s].
+        """
+        leans = self._sense * self._usual.attitude if self._pitches else 0.0
+        need = turns + leans - gone
+        return max(need, 0.0) / (time * self.mean_slowness(self._settings.tightest, 0.0, time))
+
+    def falls(self, up: float, over: float) -> float:
+        """Time to a landing as usual [s]; see `time`."""
+        return self.time(up, over, self._usual)
 
     def contact(self, momentum: float, forward: float, up: float, over: float) -> Contact:
         """The body as it is to land.

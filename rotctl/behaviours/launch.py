@@ -6,7 +6,8 @@ time: neither too little nor too much, [AlBorno2014]. Velocity and angular momen
 there together, when the centre of mass has risen to where the legs end.
 """
 
-from math import sqrt
+from collections.abc import Mapping
+from math import copysign, sqrt
 from typing import Literal
 
 from pydantic.dataclasses import dataclass as validated
@@ -32,11 +33,12 @@ class Lean:
     Attributes:
         bodies: that stand.
         margin: inside the support that the pressure keeps [m].
-        speed: to forward, backward where it is negative [m/s]; 0 keeps to the middle.
+        speed: to forward, backward where it is negative [m/s]; 0 keeps its place.
         eager: how fast a speed is taken up [1/s].
         gain: of the pressure beyond the capture point [-].
         height: of the centre of mass over the ground [m]; sink: it comes there at [m/s], and
             steady: in the end slower, by its distance [1/s].
+        ahead: of the middle of the feet, where it keeps to [m].
     """
 
     law: Literal["lean"]
@@ -48,6 +50,7 @@ class Lean:
     height: Positive
     sink: Positive
     steady: Positive
+    ahead: Finite = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -60,7 +63,7 @@ class Lean:
             more = self.eager * (self.speed - dot(momentum.com_velocity, ahead))
             along = pushed(scene, self.bodies, ahead, more, self.margin)
         else:
-            along = captured(scene, self.bodies, ahead, self.gain, self.margin)
+            along = captured(scene, self.bodies, ahead, self.gain, self.margin, self.ahead)
         across = captured(scene, self.bodies, left, self.gain, self.margin)
         task["acceleration"] = along * ahead + across * left
         above = float(momentum.com[2]) - scene.floor - self.height
@@ -121,6 +124,9 @@ class Whirl:
         flight: name of the stage that flies.
         amount: of the tuck that is planned with [-]: room is left to either side.
         calm: angular momentum across the way fades at this rate [1/s].
+        most: that legs give [kg m2/s], as measured: what needs more is refused.
+        least: it is so much, where less would do [kg m2/s]: what a launch gives across the way by
+            mistake is then a small part of it, and the body flies longer than planned.
     """
 
     law: Literal["whirl"]
@@ -128,6 +134,8 @@ class Whirl:
     flight: str
     amount: Fraction
     calm: NonNegative
+    most: Positive
+    least: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
@@ -135,17 +143,31 @@ class Whirl:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
         momentum, about = scene.state.momentum, scene.turning
-        launch = scene.aims.get(self.task)
-        flight = scene.laws.get(self.flight)
-        if not isinstance(launch, Launch):
-            raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
-        if not isinstance(flight, Flight):
-            raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
+        launch, flight = self.parts(scene.aims, scene.laws)
         wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
+        wanted = copysign(min(max(abs(wanted), self.least), self.most), scene.target)
         along = dot(momentum.angular, about)
         rate = -self.calm * (momentum.angular - along * about)
         rate += (wanted - along) / launch.left(scene) * about
         task["acceleration"] = solve(momentum.inertia, rate)
+
+    def parts(
+        self, aims: Mapping[str, object], laws: Mapping[str, object]
+    ) -> tuple[Launch, Flight]:
+        """The launch that it belongs to, and the flight that it is for.
+
+        Args:
+            aims: of the stage's tasks; laws: of the behaviour's poses, by the name of the stage.
+
+        Raises:
+            InputError: one of them is not there.
+        """
+        launch, flight = aims.get(self.task), laws.get(self.flight)
+        if not isinstance(launch, Launch):
+            raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
+        if not isinstance(flight, Flight):
+            raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
+        return launch, flight
 
 
 def feet(scene: Scene, bodies: tuple[str, ...]) -> tuple[list[support.Point], support.Point]:
@@ -164,16 +186,21 @@ def leaning(scene: Scene, bodies: tuple[str, ...]) -> tuple[float, float]:
 
 
 def captured(
-    scene: Scene, bodies: tuple[str, ...], way: Array, gain: float, margin: float
+    scene: Scene, bodies: tuple[str, ...], way: Array, gain: float, margin: float, over: float = 0.0
 ) -> float:
-    """Acceleration along a level way (3,) that keeps the capture point over the feet [m/s2]."""
+    """Acceleration along a level way (3,) that keeps the capture point over the feet [m/s2].
+
+    Args:
+        over: so far along the way from the middle of the feet [m].
+    """
     _, (mx, my) = feet(scene, bodies)
     com, velocity = scene.state.momentum.com, scene.state.momentum.com_velocity
     wx, wy, _ = way.tolist()
     rate = pendulum_rate(scene)
     off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
     out = off + dot(velocity, way) / rate
-    return pushed(scene, bodies, way, rate * rate * (off - (1.0 + gain) * out), margin)
+    wanted = rate * rate * (off - (1.0 + gain) * out + gain * over)
+    return pushed(scene, bodies, way, wanted, margin)
 
 
 def pushed(

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours import possible
 from rotctl.behaviours.aims import Aim
 from rotctl.behaviours.behaviour import (
     Placement,
@@ -23,7 +24,7 @@ from rotctl.behaviours.behaviour import (
     pose_gains_of,
 )
 from rotctl.behaviours.facing import TurnAbout, frame_of
-from rotctl.behaviours.flight import Aloft, Flight
+from rotctl.behaviours.flight import TUCK, Aloft, Flight
 from rotctl.behaviours.posing import OverPhase, PoseLaw
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import Stage, TaskSettings, mirrored
@@ -53,6 +54,7 @@ class StagedSettings:
         tasks: of every stage, by name; the controller has gains under the same names.
         target_excursion: how far to turn [deg], about
         turn_about: left, or up; poses are of a turn to the left, and mirrored for one to the right.
+        shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
     """
 
     name: str
@@ -63,6 +65,7 @@ class StagedSettings:
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     target_excursion: Finite = 0.0
     turn_about: TurnAbout = "left"
+    shape: str = TUCK
     source: str = ""
     description: str = ""
 
@@ -71,6 +74,8 @@ class StagedSettings:
             raise ValueError(f"turn_about up needs roll_about left, not {self.roll_about}")
         if self.stages[0].poses is None:
             raise ValueError("the first stage must have poses: a run starts in them")
+        if self.shape != TUCK and not any(stage.flight for stage in self.stages):
+            raise ValueError(f"shape={self.shape}: nothing flies here")
         for stage in self.stages[:-1]:
             if stage.until is None:
                 raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
@@ -122,6 +127,7 @@ class _Part:
     fillers: list[tuple[int, str, Aim]]
     slots: list[int]
     held_out: NDArray[np.bool_]
+    behind: Array | None
     pose: PoseGains
     contact: ContactGains
     aims: dict[str, Aim]
@@ -162,6 +168,8 @@ class Staged:
         self._parts = [self._part(stage) for stage in self._stages]
         self._poses = [self._law(stage) for stage in self._stages]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
+        for part in self._parts:
+            possible.check(model, self.axes, self._target, part.aims, self._laws)
 
     def _part(self, stage: Stage) -> _Part:
         model = self._model
@@ -189,13 +197,26 @@ class Staged:
         contact = contact_gains_of(self._control, stage.contact)
         stepping = next((aim for aim in aims.values() if isinstance(aim, Stepping)), None)
         weight = tasks["weight"].copy()
-        return _Part(tasks, fillers, slots, held_out, pose, contact, aims, stepping, weight)
+        behind = self._behind(stage)
+        return _Part(tasks, fillers, slots, held_out, behind, pose, contact, aims, stepping, weight)
+
+    def _behind(self, stage: Stage) -> Array | None:
+        """What of each body (nbody,) may only be used where it stands on its front."""
+        if not stage.toes:
+            return None
+        mj, key = self._model.mj, f"behaviour.stages.{stage.name}.toes"
+        behind = np.full(mj.nbody, -np.inf)
+        for body in body_ids(mj, stage.toes, key):
+            solid = (mj.geom_bodyid == body) & (mj.geom_contype > 0)
+            behind[body] = mj.geom_pos[solid, 0].mean()
+        return behind
 
     def _law(self, stage: Stage) -> PoseLaw:
         key = f"behaviour.stages.{stage.name}"
         if stage.flight:
-            frame = self._frame
-            return Flight(stage.flight, self._model, frame, self._target, f"{key}.flight")
+            flies, shape = stage.flight, self._settings.shape
+            key = f"{key}.flight"
+            return Flight(flies, self._model, self._frame, self._target, key, shape)
         if stage.rise:
             return stage.rise.make(self._model, f"{key}.rise")
         assert stage.poses  # one of the three is there
@@ -265,6 +286,7 @@ class Staged:
             supervisor=stage.supervisor or self._control.supervisor,
             thresholds=self._control.thresholds,
             held_out=held_out,
+            behind=part.behind,
             slots=part.slots,
         )
 

@@ -64,7 +64,8 @@ class Stage:
         pose: name of the controller's pose gains in place of its usual ones.
         contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
-        held_out: bodies whose contacts control may not use.
+        held_out: bodies whose contacts control may not use;
+        toes: of which it may use those in front of their middle alone, so that heels can rise.
     """
 
     name: str
@@ -78,6 +79,7 @@ class Stage:
     contact: str = ""
     lead: NonNegative = 0.0
     held_out: tuple[str, ...] = ()
+    toes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         given = [law for law in (self.poses, self.rise, self.flight) if law is not None]

@@ -176,6 +176,7 @@ class CompiledStep:
             given.task, given.tasks = tasks.ctypes.data, k
         self._poses[0], self._poses[1] = command.pose_a, command.pose_b
         self._held_out[:] = command.held_out
+        given.behind = 0 if command.behind is None else command.behind.ctypes.data
         m = self._library.rotctl_decide(self._self, state.data._address, *self._pointers)
         if m == FAILED:
             return None

@@ -101,7 +101,7 @@ class Controller:
             reasons.append(f"{link.form} {link.solver.name}: {passes.reason}")
         else:
             passes = pose_only(stack)
-        candidates = ~command.held_out[state.contacts.body]
+        candidates = command.candidates(state)
         used = np.zeros(len(candidates), dtype=bool)
         used[candidates] = passes.kept
         force = np.zeros((len(used), 3))

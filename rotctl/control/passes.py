@@ -92,7 +92,7 @@ def _evidence(
     m, mu = stack.contacts, stack.friction
     maps = stack.maps.reshape(6, m, 3)
     edges = np.array([[1.0, mu, mu], [1.0, mu, -mu], [1.0, -mu, mu], [1.0, -mu, -mu]])
-    candidates = ~command.held_out[state.contacts.body]
+    candidates = command.candidates(state)
     return Evidence(
         push=np.einsum("amc,mc->ma", maps, first.force),
         separation=product(stack.jacobian[::3], state.velocity),

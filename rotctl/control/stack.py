@@ -161,7 +161,7 @@ def collect(
         torques: (2, nu) pose torques tau_a, tau_b.
         blend: gamma of the previous step.
     """
-    keep = ~command.held_out[state.contacts.body]
+    keep = command.candidates(state)
     frame, jacobian = _along(model, state, command.forward, keep)
     fade = min(command.contact.damping, settings.rate)
     stop = -fade * product(jacobian, state.velocity)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from rotctl.control.settings import ContactGains, PoseGains, TaskGains
 from rotctl.control.supervisor import SupervisorName, Thresholds
+from rotctl.mechanics.state import State
 from rotctl.rotations import Array
 
 # One task: an objective over the acceleration. Mirrored by `Task` in native/layout.h.
@@ -40,6 +41,8 @@ class Command(NamedTuple):
         contact: how contacts are held.
         supervisor, thresholds: which contacts may be used.
         held_out: (nbody,) True where a body's contacts may not be used.
+        behind: (nbody,) contacts that lie further back along their body's own x may not be used,
+            either [m]; None where all may.
         slots: places of these tasks among the behaviour's, in the log; None where they are all.
     """
 
@@ -52,7 +55,18 @@ class Command(NamedTuple):
     supervisor: SupervisorName
     thresholds: Thresholds
     held_out: NDArray[np.bool_]
+    behind: Array | None = None
     slots: list[int] | None = None
+
+    def candidates(self, state: State) -> NDArray[np.bool_]:
+        """Contacts of a state (m,) that may be used."""
+        body, data = state.contacts.body, state.data
+        may = ~self.held_out[body]
+        if self.behind is not None:
+            front = data.xmat[body].reshape(-1, 3, 3)[:, :, 0]
+            x, y, z = ((state.contacts.position - data.xpos[body]) * front).T
+            may &= x + y + z >= self.behind[body]
+        return may
 
     def copy(self) -> "Command":
         """One that later steps of the behaviour leave alone."""

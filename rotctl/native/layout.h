@@ -53,7 +53,7 @@ typedef struct {
   double* bias;
 } Reading;
 
-// What a behaviour wants. Poses are (nu), `held_out` is (nbody).
+// What a behaviour wants. Poses are (nu), `held_out` is (nbody), so is `behind`, or null.
 typedef struct {
   double forward[3], blend;
   double pose_stiffness, pose_damping, pose_horizon, pose_weight, blend_weight;
@@ -63,6 +63,7 @@ typedef struct {
   const Task* task;
   const double *pose_a, *pose_b;
   const unsigned char* held_out;
+  const double* behind;
 } Command;
 
 // What `rotctl_decide` decides. Torque is (nu).

@@ -108,6 +108,15 @@ static void tell(const Self* s, const Pass* p, const Command* w, const double* f
   }
 }
 
+// Whether a contact may not be used; control/task.py `candidates`.
+static int holds_out(const mjData* d, const Reading* r, const Command* w, int contact) {
+  int body = r->body[contact];
+  if (w->held_out[body] || !w->behind) return w->held_out[body];
+  const double *place = d->xpos + 3 * body, *axes = d->xmat + 9 * body, *p = r->position[contact];
+  double x = (p[0] - place[0]) * axes[0], y = (p[1] - place[1]) * axes[3];
+  return x + y + (p[2] - place[2]) * axes[6] < w->behind[body];
+}
+
 // control/controller.py `decide`. FAILED where the reference has to take over.
 int rotctl_decide(Self* s, mjData* d, const Reading* r, const Command* w, Answer* out) {
   const Constants* c = &s->c;
@@ -119,7 +128,7 @@ int rotctl_decide(Self* s, mjData* d, const Reading* r, const Command* w, Answer
   memset(out->used, 0, sizeof out->used);
   memset(out->force, 0, sizeof(double) * 3 * r->count);
   for (int i = 0; i < r->count; i++)
-    if (!w->held_out[r->body[i]]) kept[k] = k, contact[k++] = i;
+    if (!holds_out(d, r, w, i)) kept[k] = k, contact[k++] = i;
   if (collect(s, d, r, contact, k, w, out) == FAILED) return FAILED;
   choose(s, &pass, kept, k, k);
   if (solve_pass(s, &pass, w, 0, force, &gamma, &out->residual, &head) == FAILED) return FAILED;

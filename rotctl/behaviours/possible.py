@@ -1,0 +1,72 @@
+"""What no launch can give is refused before anything is simulated, with the reason.
+
+Time in the air follows from ballistics, the least angular momentum for a turn in that time from
+the tightest shape; how much legs give at all was measured and stands with the launch.
+"""
+
+from collections.abc import Mapping
+from math import copysign, degrees, pi, radians, tau
+
+from rotctl.behaviours.flight import Flight
+from rotctl.behaviours.launch import Launch, Whirl
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model
+from rotctl.rotations import Array
+
+GONE = radians(60.0)  # already turned at take-off: as far as the strongest launches here
+KEY = "behaviour.target_excursion"
+
+
+def check(
+    model: Model,
+    axes: Array,
+    target: float,
+    aims: Mapping[str, object],
+    laws: Mapping[str, object],
+) -> None:
+    """Look at a stage's launch, if it has one, and at the flight that it is for.
+
+    Args:
+        axes: (3, 3) rows are forward, left and up.
+        target: to turn about left [rad].
+        aims: of the stage's tasks; laws: of the behaviour's poses, by the name of the stage.
+
+    Raises:
+        InputError: a launch does not give the turn; the line says what would do.
+    """
+    for whirl in aims.values():
+        if isinstance(whirl, Whirl):
+            launch, flight = whirl.parts(aims, laws)
+            _check_turn(flight, target)
+            _check_momentum(model, axes, target, launch, whirl, flight)
+
+
+def _check_turn(flight: Flight, target: float) -> None:
+    """Raises InputError for a turn after which other parts come down first."""
+    if not flight.lands():
+        near = [degrees(angle) for angle in (target - pi, target + pi)]
+        turns = " or ".join(f"{angle:.0f}" for angle in sorted(near, key=abs) if abs(angle) > 1.0)
+        raise InputError(
+            f"{KEY}={degrees(target):g}: it would not come down on its "
+            f"{' or '.join(flight.bodies)}; half a turn less or more: {turns}"
+        )
+
+
+def _check_momentum(
+    model: Model, axes: Array, target: float, launch: Launch, whirl: Whirl, flight: Flight
+) -> None:
+    """Raises InputError for more angular momentum than legs give."""
+    back = 2.0 * launch.up / -float(model.gravity[2])  # [s] till it is as high as at take-off
+    x, y, _ = (back * launch.forward * axes[0]).tolist()
+    time = flight.falls(launch.up, launch.height - model.ground.height(x, y))
+    turns = [abs(target)]  # and fewer, till one is possible
+    while turns[-1] > 0.0 and flight.least_momentum(turns[-1], GONE, time) > whirl.most:
+        turns.append(turns[-1] - tau)
+    if len(turns) == 1:
+        return
+    fewer = f"{degrees(copysign(turns[-1], target)):g} is possible" if turns[-1] > 0.0 else ""
+    raise InputError(
+        f"{KEY}={degrees(target):g}: to turn so far in {time:.2f} s asks for "
+        f"{flight.least_momentum(turns[0], GONE, time):.0f} kg m2/s in the tightest shape, and "
+        f"legs give at most {whirl.most:g}; {fewer or 'no turn is possible'} here"
+    )

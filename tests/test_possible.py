@@ -1,0 +1,68 @@
+"""Turns that no launch gives are refused; what is refused really falls short."""
+
+import pytest
+from flights import HEAD_FIRST, flier, fly
+
+from rotctl.behaviours.possible import GONE
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.scenario import build
+
+KEY = "behaviour.target_excursion"
+MOST = 48.0  # [kg m2/s] of the dives' launches
+
+
+def refusal(*overrides):
+    with pytest.raises(InputError) as caught:
+        build(load(list(overrides)))
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "target", "height", "said"),
+    [
+        (
+            "dive_backward",
+            -1260,
+            10,
+            "to turn so far in 1.67 s asks for 51 kg m2/s in the tightest shape, and legs give at "
+            "most 48; -900 is possible here",
+        ),
+        (
+            "dive_backward",
+            -540,
+            1,
+            "to turn so far in 0.73 s asks for 61 kg m2/s in the tightest shape, and legs give at "
+            "most 48; -180 is possible here",
+        ),
+        (
+            "dive_forward",
+            360,
+            10,
+            "it would not come down on its forearm; half a turn less or more: 180 or 540",
+        ),
+    ],
+)
+def test_a_dive_that_no_body_makes_is_refused(behaviour, target, height, said):
+    dive = (f"behaviour={behaviour}", f"{KEY}={target}", f"terrain.height={height}")
+    assert refusal(*dive) == f"{KEY}={target}: {said}"
+
+
+def test_so_is_a_flip_that_ends_on_the_head_or_turns_twice():
+    assert refusal("behaviour=back_flip", f"{KEY}=-180") == (
+        f"{KEY}=-180: it would not come down on its foot; half a turn less or more: -360"
+    )
+    assert "; -360 is possible here" in refusal("behaviour=back_flip", f"{KEY}=-720")
+
+
+def test_shapes_that_are_not_there_are_told():
+    said = "behaviour.shape=ball: no such shape; valid: tuck"
+    assert refusal("behaviour=back_flip", "behaviour.shape=ball").startswith(said)
+    assert "nothing flies here" in refusal("behaviour=stand", "+behaviour.shape=pike")
+
+
+@pytest.mark.parametrize(("turns", "short"), [(3.5, True), (2.5, False)])
+def test_what_is_refused_falls_short_in_the_air(turns, short):
+    """Of 10 m, with all that legs give, turned already as far as is allowed for."""
+    landed = fly(flier(turns, HEAD_FIRST), MOST, height=11.05, up=2.2, pitch=GONE)
+    assert landed.error < -20.0 if short else abs(landed.error) < 5.0
