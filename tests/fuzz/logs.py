@@ -75,7 +75,7 @@ def log_structure(rng, samples, here):
     shutil.copy(rng.choice(samples.logs), here / "run.h5")
     with h5py.File(here / "run.h5", "r+") as file:
         for _ in range(rng.choice((1, 1, 3))):
-            name = rng.choice([f"{group}/{leaf}" for group in file for leaf in file[group]])
+            name = rng.choice(_datasets(file))
             how = rng.choice(HARM)
             if how == "attribute":
                 owner = rng.choice((file, file[name]))
@@ -99,6 +99,15 @@ def log_structure(rng, samples, here):
                 chunks = tuple(min(n, 4) for n in shape) if shape and all(shape) else None
                 file.create_dataset(name, shape, kind, chunks=chunks).attrs.update(about)
     return _with_a_log(rng, here)
+
+
+def _datasets(file):
+    """Names of what is in the groups, and of the scales beside them, but for harmed links."""
+    names = []
+    for top in filter(file.__contains__, file):
+        group = isinstance(file[top], h5py.Group)
+        names += [f"{top}/{leaf}" for leaf in file[top]] if group else [top]
+    return list(filter(file.__contains__, names))
 
 
 def _with_a_log(rng, here):
