@@ -61,6 +61,7 @@ GOOD = RollingMetrics(
     airborne=0.0,
     jerk=500.0,
     chatter=5.0,
+    sticking=0.1,
     recovery=0.5,
     recovered=1.0,
     torque_p99_fraction=0.6,
@@ -94,6 +95,7 @@ def make_log(steps=600, rate=0.5, speed=0.9, heading=0.0, lateral=0.0, turns=Non
         "contacts/ground_force": np.tile([0.0, 30.0, 40.0], (steps, 1)),
         "contacts/ground_force_peak": none + 60.0,
         "contacts/penetration": none + 0.01,
+        "contacts/force_realised": np.zeros((steps, 3, 3)),
         "contacts/body": np.full((steps, 3), -1, dtype=np.int32),
         "contacts/used": np.zeros((steps, 3), dtype=bool),
         "trajectory/qvel": np.zeros((steps, 8)),
@@ -294,6 +296,17 @@ def test_chatter_counts_bodies_not_slots():
     assert measure(log, CRITERIA, 0.5, PERIOD).chatter == pytest.approx(2 / 10)
 
 
+def test_what_control_keeps_still_sticks_where_the_ground_hardly_carries_it():
+    """Of two bodies kept for 600 steps, the first by two contacts, one carries nothing for 150."""
+    log = make_log(steps=600)
+    body, used, force = (log[f"contacts/{name}"] for name in ("body", "used", "force_realised"))
+    body[:, :2], body[:, 2] = 4, 7
+    used[:, :3] = True
+    force[:, 0, 2] = 500.0
+    force[150:, 2, 1] = -20.0
+    assert measure(log, CRITERIA, 0.5, PERIOD).sticking == pytest.approx(150 / 1200)
+
+
 def test_only_steps_without_any_solver_are_failures():
     log = make_log()
     log["solver/status"][[3, 4, 5]] = 1
@@ -310,6 +323,7 @@ def test_short_logs(steps):
         "speed_mean",
         "recovery",
         "recovered",
+        "sticking",  # control uses no contact here
         *(("jerk",) if steps < 3 else ()),
         *(("chatter",) if steps < 2 else ()),
         *OF_REVOLUTIONS,

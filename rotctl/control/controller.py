@@ -7,7 +7,7 @@ import numpy as np
 
 from rotctl.control.compiled import CompiledStep, serves
 from rotctl.control.decision import POSE_ONLY, SOLVED_BY_FALLBACK, Decision
-from rotctl.control.passes import Link, pose_only
+from rotctl.control.passes import Link, Rehearsal, pose_only
 from rotctl.control.pose import PoseTracker
 from rotctl.control.settings import BackendName, ControllerSettings
 from rotctl.control.stack import Stack, collect
@@ -57,10 +57,11 @@ class Controller:
         self.model = model
         self.settings = settings
         self._tracker = PoseTracker(model, 1.0 / settings.rate)
-        self.chain = [Link(settings.form, solver)]
+        rehearsal = Rehearsal(model)
+        self.chain = [Link(settings.form, solver, rehearsal)]
         if (settings.form, solver.name) != ("condensed", "boxqp"):
-            self.chain.append(Link("condensed", make_solver("boxqp")))
-        self.chain.append(Link("condensed", ActiveSet()))
+            self.chain.append(Link("condensed", make_solver("boxqp"), rehearsal))
+        self.chain.append(Link("condensed", ActiveSet(), rehearsal))
         wanted = settings.backend == "compiled" and serves(settings, model)
         self._step = CompiledStep(model, settings) if wanted and library() else None
         self.backend: BackendName = "compiled" if self._step else "reference"

@@ -44,12 +44,38 @@ class Passes:
         return "" if np.isfinite(self.answer.torque.sum()) else "torques are not finite"
 
 
+class Rehearsal:
+    """The physics, asked what it would do and undone; it has a memory of its own, made once."""
+
+    def __init__(self, model: Model) -> None:
+        """Of `model`."""
+        self._model = model
+        self._data: mujoco.MjData | None = None
+
+    def realised(self, torque: Array, state: State) -> Array:
+        """Force and torque about the centre of mass (k, 6) of every contact, [N, N m].
+
+        In the physics step that begins at this state, with torques (nu,) [N m].
+        """
+        model = self._model
+        if self._data is None:
+            self._data = mujoco.MjData(model.mj)
+        tried = self._data
+        mujoco.mj_copyData(tried, model.mj, state.data)
+        tried.ctrl[:] = np.clip(torque, -model.torque_limit, model.torque_limit)
+        mujoco.mj_forward(model.mj, tried)
+        force = realised_forces(model.mj, tried, state.contacts)
+        lever = state.contacts.position - state.momentum.com
+        return np.concatenate((force, np.cross(lever, force)), axis=1)
+
+
 @dataclass(frozen=True)
 class Link:
     """One way to solve a step: a form of the optimisation and a solver for it."""
 
     form: FormName
     solver: Solver
+    rehearsal: Rehearsal
 
     def passes(self, stack: Stack, model: Model, state: State, command: Command) -> Passes:
         """The optimisation over all candidate contacts, then over those that pass the test."""
@@ -61,7 +87,7 @@ class Link:
         rule = RULES.get(command.supervisor)
         if over_all.reason or rule is None:
             return over_all
-        keep = rule(_evidence(first, stack, model, state, command), command.thresholds)
+        keep = rule(self._evidence(first, stack, state, command), command.thresholds)
         if keep.all() and not free:
             return over_all
         subset = stack.subset(keep)
@@ -76,6 +102,19 @@ class Link:
             return literal.solve(stack, model, state, self.solver)
         return condensed.solve(stack, self.solver, start)
 
+    def _evidence(self, first: Answer, stack: Stack, state: State, command: Command) -> Evidence:
+        m, mu = stack.contacts, stack.friction
+        maps = stack.maps.reshape(6, m, 3)
+        edges = np.array([[1.0, mu, mu], [1.0, mu, -mu], [1.0, -mu, mu], [1.0, -mu, -mu]])
+        candidates = command.candidates(state)
+        return Evidence(
+            push=np.einsum("amc,mc->ma", maps, first.force),
+            separation=product(stack.jacobian[::3], state.velocity),
+            place=state.contacts.position[candidates, :2],
+            edges=np.einsum("amc,ec->mea", maps, edges),
+            realised=lambda: self.rehearsal.realised(first.torque, state)[candidates],
+        )
+
 
 def pose_only(stack: Stack) -> Passes:
     """Where nothing solves: track the previous blend of the two poses, plan with no contact."""
@@ -84,33 +123,3 @@ def pose_only(stack: Stack) -> Passes:
     solution = Solution(np.empty(0), True, 0, float("nan"))
     answer = Answer(torque, np.empty((0, 3)), stack.blend, solution)
     return Passes(answer, stack.subset(nothing), nothing, 0)
-
-
-def _evidence(
-    first: Answer, stack: Stack, model: Model, state: State, command: Command
-) -> Evidence:
-    m, mu = stack.contacts, stack.friction
-    maps = stack.maps.reshape(6, m, 3)
-    edges = np.array([[1.0, mu, mu], [1.0, mu, -mu], [1.0, -mu, mu], [1.0, -mu, -mu]])
-    candidates = command.candidates(state)
-    return Evidence(
-        push=np.einsum("amc,mc->ma", maps, first.force),
-        separation=product(stack.jacobian[::3], state.velocity),
-        place=state.contacts.position[candidates, :2],
-        edges=np.einsum("amc,ec->mea", maps, edges),
-        realised=lambda: _realised(first, model, state)[candidates],
-    )
-
-
-def _realised(first: Answer, model: Model, state: State) -> Array:
-    """Force and torque about the centre of mass (k, 6) of every contact, [N, N m].
-
-    In the physics step that begins at this state, with the torques of `first`.
-    """
-    tried = mujoco.MjData(model.mj)
-    mujoco.mj_copyData(tried, model.mj, state.data)
-    tried.ctrl[:] = np.clip(first.torque, -model.torque_limit, model.torque_limit)
-    mujoco.mj_forward(model.mj, tried)
-    force = realised_forces(model.mj, tried, state.contacts)
-    lever = state.contacts.position - state.momentum.com
-    return np.concatenate((force, np.cross(lever, force)), axis=1)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, solver_failures
-from rotctl.metrics.smoothness import chatter, jerk, recovery
+from rotctl.metrics.smoothness import chatter, jerk, recovery, sticking
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
@@ -37,6 +37,7 @@ COLUMNS = (
     Column("airborne", "Share of the time without a contact", ""),
     Column("jerk", "Jerk of the joints, rms", "rad/s3"),
     Column("chatter", "Contacts taken or left by control", "1/s"),
+    Column("sticking", "Held by control with hardly a force on it", ""),
     Column("recovery", "Rolling on after the push", "s"),
     Column("recovered", "Rolled on in time after the push", ""),
 )
@@ -117,6 +118,7 @@ class RollingMetrics:
         airborne: share of the time without a contact with the ground.
         jerk: root mean square over joints and time [rad/s3].
         chatter: bodies whose contacts control begins or ceases to use, a second [1/s].
+        sticking: share of what control keeps still on the ground that has hardly a force on it.
         recovery: from the end of what acted from outside until it rolls on along the way [s];
             NaN if it never did, or nothing acted and ended.
         recovered: 1 if that was in time, 0 if not; NaN where nothing acted and ended.
@@ -147,6 +149,7 @@ class RollingMetrics:
     airborne: float
     jerk: float
     chatter: float
+    sticking: float
     recovery: float
     recovered: float
     torque_p99_fraction: float
@@ -172,6 +175,7 @@ IN_FILES_ONLY = (
     "ground_force_peak",
     "jerk",
     "chatter",
+    "sticking",
     "recovery",
     "recovered",
 )
@@ -225,6 +229,7 @@ def measure(
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         jerk=jerk(log, period),
         chatter=chatter(log, period),
+        sticking=sticking(log),
         **recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=solver_failures(log),

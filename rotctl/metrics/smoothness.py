@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 
 from rotctl.metrics.columns import Arrays, floats
 
+LIGHT = 7.0  # [N] a hundredth of an adult: the ground hardly carries what it gives less than that
+
 
 class Limits(Protocol):
     """What of the criteria a push is judged by; see `RollingCriteria`."""
@@ -41,13 +43,33 @@ def jerk(log: Arrays, period: float) -> float:
 
 def chatter(log: Arrays, period: float) -> float:
     """Bodies that control takes up or lets go of, a second; NaN for too few rows."""
-    body, used = np.asarray(log["contacts/body"]), np.asarray(log["contacts/used"]).astype(bool)
-    if len(body) < 2:
+    held = _held(log)
+    if len(held) < 2:
         return math.nan
+    return float((held[1:] != held[:-1]).sum() / ((len(held) - 1) * period))
+
+
+def sticking(log: Arrays) -> float:
+    """Share of the time and of the bodies that control keeps still, in which hardly a force acts.
+
+    What the ground does not carry would be free to leave it. NaN where control never uses one.
+    """
+    held = _held(log)
+    force = np.sqrt((floats(log, "contacts/force_realised") ** 2).sum(axis=2))
+    body = np.asarray(log["contacts/body"])
+    carried = np.zeros(held.shape)
+    rows, slots = np.nonzero(force)
+    np.add.at(carried, (rows, body[rows, slots]), force[rows, slots])
+    return float((carried[held] < LIGHT).mean()) if held.any() else math.nan
+
+
+def _held(log: Arrays) -> NDArray[np.bool_]:
+    """Which bodies (steps, n) control keeps still on the ground."""
+    body, used = np.asarray(log["contacts/body"]), np.asarray(log["contacts/used"]).astype(bool)
     held = np.zeros((len(body), int(body.max(initial=0)) + 1), dtype=bool)
     rows, slots = np.nonzero(used)
     held[rows, body[rows, slots]] = True
-    return float((held[1:] != held[:-1]).sum() / ((len(body) - 1) * period))
+    return held
 
 
 def recovery(
