@@ -71,7 +71,7 @@ lint: setup ## style, layout, types, floors: changes nothing
 
 # Three starts a row take minutes on two cores: make reproduce QUICK=1
 # The same commit goes on where it was interrupted; another one must not mix its runs with the old.
-# All of them make some twenty thousand runs, in hours on two cores; Table 1 comes first.
+# All of them make some twelve thousand runs, in hours on two cores; Table 1 comes first.
 FIRST     = table1 contrasts
 EVERY     = $(sort $(basename $(notdir $(wildcard experiments/*.yaml))))
 STUDIES   = $(FIRST) $(if $(QUICK),,$(filter-out $(FIRST),$(EVERY)))
