@@ -124,6 +124,29 @@ def test_a_task_that_always_kills_is_a_failure(engine):
     assert results == [(0, Failure("the workers that tried it died"))]
 
 
+def test_short_items_go_together_and_one_that_kills_takes_no_other_with_it(engine):
+    """After the first ones, ten milliseconds are known to be short."""
+    items = [*["a"] * 300, "kill", *["b"] * 100]
+    results = dict(engine.map(sweep_tasks.trouble, items, retries=3))
+    assert results.pop(300) == Failure("the workers that tried it died")
+    assert {index: items[index] for index in results} == {i: r[0] for i, r in results.items()}
+    assert len(results) == 400
+
+
+@pytest.mark.parametrize(
+    ("done", "seconds", "left", "size"),
+    [
+        (0, 0.0, 1000, 1),  # nothing is known
+        (32, 0.32, 1000, 30),  # ten milliseconds each
+        (32, 0.0, 10_000, 64),
+        (32, 0.32, 64, 2),  # some is left for the others
+        (32, 320.0, 1000, 1),
+    ],
+)
+def test_how_many_items_make_a_task(done, seconds, left, size):
+    assert cluster_module.Pace(done, seconds).size(left) == size
+
+
 def test_the_runs_are_the_same_as_they_are_here(cluster, tmp_path):
     grid = ["duration=1", "seed=range(0,3)"]
     local, dask = swept(tmp_path / "local", *grid), tmp_path / "dask"

@@ -64,9 +64,9 @@ def sweep(arguments: argparse.Namespace) -> int:
     kept = keep.read(arguments.keep)
     watched = None if not arguments.quiet else True  # None: only on a terminal
     matrix = experiments.matrix(arguments.overrides)
-    with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
-        runs = planned(bar)
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
+        with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
+            runs = planned(bar)
         if arguments.dry_run:
             print(without_running(runs, arguments.out, engine.workers, kept))
             return 0

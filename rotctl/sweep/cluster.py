@@ -1,11 +1,15 @@
 """Workers on other machines, through a Dask scheduler that somebody has started."""
 
 import logging
+import socket
 import threading
+import time
+from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import CancelledError
-from itertools import islice
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
+from urllib.parse import urlsplit
 from uuid import uuid4
 
 from rotctl.errors import InputError, RotctlError
@@ -17,8 +21,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 
-PATIENCE = 10.0  # [s] for a scheduler to answer
-# Tasks at the scheduler at once. Results wait in the workers' memory until they are fetched,
+PATIENCE = 5.0  # [s] for a scheduler to answer
+MOMENT = 0.2  # [s] between two tries to reach it
+TASK = 0.3  # [s] of work in a task
+MOST_TOGETHER = 64  # items of a task
+FIRST = 32  # tasks of one item each, before anything is known
+SHARES = 32  # of what is left, a task has at most one
+# Items at the scheduler at once. Results wait in the workers' memory until they are fetched,
 # at about 1 MB a run: this bounds them, and keeps a hundred workers busy.
 IN_FLIGHT = 512
 TLS = "distributed.comm.tls, see docs/sweeps.md"
@@ -40,6 +49,7 @@ def connect(address: str) -> "DaskEngine":
         from distributed import Client, Security
     except ImportError:
         raise InputError(NOT_INSTALLED) from None
+    _require_answer(address)
     security = Security()
     if address.startswith("tls://") and not security.get_connection_args("client")["ssl_context"]:
         raise InputError(f"--scheduler={address}: Dask's settings name no TLS files: {TLS}")
@@ -51,10 +61,66 @@ def connect(address: str) -> "DaskEngine":
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False, security=security)
-    except (OSError, ValueError, TypeError, RuntimeError) as error:
+    except (OSError, ValueError, TypeError, RuntimeError, MemoryError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"--scheduler={address}: no Dask scheduler there: {reason}") from None
     return DaskEngine(client, address)
+
+
+def _require_answer(address: str) -> None:
+    """See that somebody listens there, or soon does: Dask's own client takes its time to give up.
+
+    Raises:
+        InputError: nobody does.
+    """
+    end = time.monotonic() + PATIENCE
+    while True:
+        try:
+            parts = urlsplit(address)
+            place = parts.hostname or "", parts.port or 0
+            socket.create_connection(place, max(MOMENT, end - time.monotonic())).close()
+            return
+        except (OSError, ValueError) as error:
+            if isinstance(error, ValueError) or time.monotonic() > end - MOMENT:
+                reason = getattr(error, "strerror", None) or str(error)
+                raise InputError(
+                    f"--scheduler={address}: no Dask scheduler there: {reason}"
+                ) from None
+            time.sleep(MOMENT)
+
+
+Batch = tuple[tuple[int, ...], int]  # indices of items; deaths of workers that had them
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How many items make a task.
+
+    A task costs some milliseconds of the scheduler's and the client's, however short it is. So
+    short ones go together; few towards the end, that no worker has much left when others have none.
+
+    Attributes:
+        done, seconds: items that are done, and the time they took.
+    """
+
+    done: int = 0
+    seconds: float = 0.0
+
+    @property
+    def in_flight(self) -> int:
+        """Items that may be at the scheduler at once: few until it is known how long one takes."""
+        return IN_FLIGHT if self.done else FIRST
+
+    def size(self, left: int) -> int:
+        """Items of the next task."""
+        if not self.done:
+            return 1
+        wanted = round(TASK * self.done / max(self.seconds, 1e-6))
+        return max(1, min(wanted, MOST_TOGETHER, left // SHARES, left))
+
+    def after(self, count: int, seconds: float) -> "Pace":
+        """The pace when so many more are done."""
+        return Pace(self.done + count, self.seconds + seconds)
 
 
 class DaskEngine:
@@ -86,28 +152,43 @@ class DaskEngine:
         from distributed import as_completed
 
         series = uuid4().hex  # the scheduler may have other clients
-        left = iter(enumerate(items))
-        going: dict[str, tuple[int, int]] = {}  # key -> (index, deaths so far)
+        left = deque(range(len(items)))
+        going: dict[str, Batch] = {}
         pending = as_completed(loop=self._client.loop)
+        pace = Pace()
 
-        def submit(index: int, item: T, deaths: int) -> None:
-            key = f"rotctl-{series}-{index}-{deaths}"
-            going[key] = index, deaths
-            pending.add(self._client.submit(_one_at_a_time, task, item, key=key, pure=False))
+        def submit(batch: Batch) -> None:
+            indices, deaths = batch
+            key = f"rotctl-{series}-{indices[0]}-{len(indices)}-{deaths}"
+            going[key] = batch
+            some = [items[index] for index in indices]
+            pending.add(self._client.submit(_one_by_one, task, some, key=key, pure=False))
 
-        for index, item in islice(left, IN_FLIGHT):
-            submit(index, item, 0)
+        def fill() -> None:
+            while left and sum(len(indices) for indices, _ in going.values()) < pace.in_flight:
+                size = pace.size(len(left))
+                submit((tuple(left.popleft() for _ in range(size)), 0))
+
+        fill()
         for future in pending:
-            index, deaths = going.pop(future.key)
+            indices, deaths = going.pop(future.key)
             result = self._result(future)
+            if result is None and len(indices) > 1:  # of one of them, nobody knows which
+                for index in indices:
+                    submit(((index,), deaths))
+                continue
+            if result is None and deaths < retries:
+                submit((indices, deaths + 1))
+                continue
             if result is None:
-                if deaths < retries:
-                    submit(index, items[index], deaths + 1)
-                    continue
                 result = Failure("the workers that tried it died")
-            for following, item in islice(left, 1):
-                submit(following, item, 0)
-            yield index, result
+            if isinstance(result, Failure):
+                results = [result] * len(indices)
+            else:
+                results, seconds = result
+                pace = pace.after(len(indices), seconds)
+            fill()
+            yield from zip(indices, results, strict=True)
 
     def _result(self, future: Any) -> Any:
         """What became of a task; None if it was the death of its workers."""
@@ -132,7 +213,12 @@ class DaskEngine:
 _LOCK = threading.Lock()
 
 
-def _one_at_a_time(task: Callable[[T], R], item: T) -> R | Failure:
-    """MuJoCo's warnings and Hydra are one for a process: no two tasks in threads of it."""
+def _one_by_one(task: Callable[[T], R], items: Sequence[T]) -> tuple[list[R | Failure], float]:
+    """The results, and how long they took [s].
+
+    MuJoCo's warnings and Hydra are one for a process: no two tasks in threads of it.
+    """
     with _LOCK:
-        return carried_out(task, item)
+        begin = time.perf_counter()
+        results = [carried_out(task, item) for item in items]
+        return results, time.perf_counter() - begin
