@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 
 from rotctl import files
+from rotctl.checkpoint import Checkpoints
 from rotctl.config import Config, to_dict, to_yaml
 from rotctl.control import Controller
 from rotctl.documents import from_yaml
+from rotctl.encoding import encoded
 from rotctl.errors import LogError
-from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, collect, encode_run
-from rotctl.log.digest import simulated as hashed
+from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, encode_run
 from rotctl.log.schema import MODEL_PATH
-from rotctl.log.writer import whole
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
 from rotctl.scenario import Making, Scenario, acting, build
 from rotctl.simulation.episode import Moment
-from rotctl.simulation.loop import simulate
-from rotctl.summary import Summary, broke_down, judged_again, summarise
+from rotctl.simulation.loop import Look, nobody, simulate
+from rotctl.summary import Summary, broke_down, judged_again
 
 
 @dataclass(frozen=True)
@@ -81,11 +81,16 @@ def run(
         except LogError as error:
             replaced = str(error)
     with files.folder(folder, linked=False):
-        encoded = _encoded(scenario, progress)
-        publish(encoded, folder)
+        checkpoints = Checkpoints(scenario, folder)
+        try:
+            made = _simulated(scenario, progress, look=checkpoints)
+        except KeyboardInterrupt:
+            checkpoints.write()
+            raise
+        publish(made, folder)
     notices = (scenario.controller.notice, scenario.stepper.notice)
     notice = "; ".join(filter(None, notices))
-    return Result(folder, encoded.summary, False, encoded.trajectory, replaced, notice)
+    return Result(folder, made.summary, False, made.trajectory, replaced, notice)
 
 
 def same_criteria(data: Mapping[str, Any], config: Config) -> bool:
@@ -138,7 +143,7 @@ def simulated(
     Raises:
         InputError: the config does not make a run.
     """
-    return _encoded(built(config, controller_of), lambda: None, keeps)
+    return _simulated(built(config, controller_of), keeps=keeps)
 
 
 def built(config: Config, controller_of: Making = Controller) -> Scenario:
@@ -151,51 +156,24 @@ def built(config: Config, controller_of: Making = Controller) -> Scenario:
         return build(config, controller_of)
 
 
-def _encoded(
+def _simulated(
     scenario: Scenario,
-    progress: Callable[[], object],
+    progress: Callable[[], object] = lambda: None,
     keeps: Callable[[Summary], bool] = lambda summary: True,
+    look: Look = nobody,
 ) -> EncodedRun:
     begin = time.perf_counter()
-    buffer, ending = in_memory(scenario, progress)
-    wall = time.perf_counter() - begin
-    arrays, source = whole(buffer, scenario.model.mjcf), origin(scenario)
-    summary = summarise(scenario, arrays, ending, wall)
-    digest, log, text = hashed(arrays), b"", ""
-    if keeps(summary):
-        text = to_yaml(scenario.config)
-        log = encode_run(
-            buffer,
-            model_xml=scenario.model.mjcf,
-            attributes={
-                **source,
-                "config": text,
-                "run_id": scenario.run_id,
-                "seed": scenario.config.seed,
-                "wall_time": wall,
-                "outcome": summary,
-            },
-            digest=digest,
-        )
-    return EncodedRun(summary, log, text, source, wall, digest.hexdigest())
-
-
-def origin(scenario: Scenario) -> dict[str, Any]:
-    """Code, versions and machine of a run, as they are in its log."""
-    here = collect()
-    steps = {
-        "control_step": scenario.controller.backend,
-        "physics_step": scenario.stepper.backend,
-    }
-    return {**here, "versions": {**here["versions"], **steps}}
+    buffer, ending = in_memory(scenario, progress, look=look)
+    return encoded(scenario, buffer, ending, time.perf_counter() - begin, keeps)
 
 
 def in_memory(
     scenario: Scenario,
     progress: Callable[[], object] = lambda: None,
     stop: Callable[[Moment], bool] = lambda moment: False,
+    look: Look = nobody,
 ) -> tuple[TrajectoryBuffer, str]:
-    """Simulate, and write nothing; `progress` and `stop` are those of `simulate`.
+    """Simulate, and write nothing; `progress`, `stop` and `look` are those of `simulate`.
 
     Returns:
         The rows, and what ended them early: a breakdown, or the end of the ground; else empty.
@@ -208,6 +186,7 @@ def in_memory(
             scenario.config.physics.contact_capacity,
             progress,
             stop,
+            look,
         )
     # MuJoCo counts most warnings, and the loop stops at those; not all are counted.
     heard = f"MuJoCo warns: {warnings[0]}" if warnings else ""

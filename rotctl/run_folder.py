@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from rotctl.log.outcome import require_verdict
 from rotctl.summary import Summary
 
 SUMMARY_NAME, CONFIG_NAME = "summary.json", "config.yaml"
+INTERRUPTED_NAME = "interrupted.h5"  # the beginning of a run that is not over
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ def publish(run: EncodedRun, folder: Path) -> None:
     with files.folder(folder, linked=False):
         write_log(folder / LOG_NAME, run.log)
         _write_beside(folder, run.summary, run.config)
+        with suppress(OSError):
+            (folder / INTERRUPTED_NAME).unlink(missing_ok=True)
 
 
 def open_published(folder: Path, run_id: str) -> tuple[RunLog, str]:

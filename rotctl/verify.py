@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.config import recorded
+from rotctl.encoding import origin
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
-from rotctl.run import built, in_memory, origin
+from rotctl.run import built, in_memory
 from rotctl.scenario import Scenario
 from rotctl.summary import summarise
 

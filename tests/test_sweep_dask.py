@@ -137,8 +137,8 @@ def test_short_items_go_together_and_one_that_kills_takes_no_other_with_it(engin
     ("done", "seconds", "left", "size"),
     [
         (0, 0.0, 1000, 1),  # nothing is known
-        (32, 0.32, 1000, 30),  # ten milliseconds each
-        (32, 0.0, 10_000, 64),
+        (32, 0.32, 10_000, 100),  # ten milliseconds each
+        (32, 0.0, 10_000, 128),
         (32, 0.32, 64, 2),  # some is left for the others
         (32, 320.0, 1000, 1),
     ],

@@ -41,7 +41,11 @@ def add_run(commands: Commands) -> None:
     command.add_argument(
         "--filmstrip", action="store_true", help="also draw filmstrip.png beside it"
     )
-    command.set_defaults(command=run)
+    command.set_defaults(
+        command=run,
+        interrupted="an unfinished run leaves no log; of one of more than a minute its beginning "
+        "is in interrupted.h5",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

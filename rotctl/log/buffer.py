@@ -140,7 +140,10 @@ def _array(buffer: TrajectoryBuffer, name: str) -> NDArray[Any]:
 
 
 def _allocate(spec: DatasetSpec, sizes: dict[str, int]) -> NDArray[Any]:
-    return np.full(_shape(spec, sizes), spec.fill, dtype=spec.dtype)
+    shape = _shape(spec, sizes)
+    if not spec.fill:  # memory of long runs that nobody has touched yet costs nothing
+        return np.zeros(shape, dtype=spec.dtype)
+    return np.full(shape, spec.fill, dtype=spec.dtype)
 
 
 def _shape(spec: DatasetSpec, sizes: dict[str, int]) -> list[int]:

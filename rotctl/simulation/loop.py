@@ -24,12 +24,20 @@ class Outcome:
     left: str = ""
 
 
+Look = Callable[[TrajectoryBuffer, int], object]
+
+
+def nobody(buffer: TrajectoryBuffer, done: int) -> None:
+    """Looks at nothing."""
+
+
 def simulate(
     parts: Parts,
     duration: float,
     capacity: int,
     progress: Callable[[], object] = lambda: None,
     stop: Callable[[Moment], bool] = lambda moment: False,
+    look: Look = nobody,
 ) -> Outcome:
     """Run one simulation.
 
@@ -38,6 +46,7 @@ def simulate(
         capacity: contacts a log row can hold.
         progress: called after every control step.
         stop: asked after every control step; True ends the run there, as nothing broke.
+        look: called after every control step with the rows and how many of them are written.
 
     Raises:
         InputError: the duration is no whole number of control periods.
@@ -64,6 +73,7 @@ def simulate(
                 buffer.add_event(time, event)
         record(buffer, i, moment)
         progress()
+        look(buffer, done)
         if stop(moment) or done == steps:
             return Outcome(buffer.trimmed(done), parts.stepper.complaint(episode.data))
     buffer.add_event(done / rate, episode.breakdown or episode.left)

@@ -23,8 +23,8 @@ R = TypeVar("R")
 
 PATIENCE = 5.0  # [s] for a scheduler to answer
 MOMENT = 0.2  # [s] between two tries to reach it
-TASK = 0.3  # [s] of work in a task
-MOST_TOGETHER = 64  # items of a task
+TASK = 1.0  # [s] of work in a task
+MOST_TOGETHER = 128  # items of a task
 FIRST = 32  # tasks of one item each, before anything is known
 SHARES = 32  # of what is left, a task has at most one
 # Items at the scheduler at once. Results wait in the workers' memory until they are fetched,
