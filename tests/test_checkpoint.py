@@ -70,7 +70,7 @@ def test_a_short_run_leaves_nothing(tmp_path):
 
 def test_it_is_written_now_and_then(tmp_path, monkeypatch):
     """A kill cannot be caught: what it leaves was there before."""
-    monkeypatch.setattr(checkpoint, "EVERY", 0.1)
+    monkeypatch.setattr(checkpoint, "EVERY", 0.002)
     monkeypatch.setattr(checkpoint, "LEAST_WORK", 0.0)
     seen = []
 
