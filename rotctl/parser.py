@@ -40,7 +40,14 @@ repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad in
 # In the order of the help.
 COMMANDS = (
     *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
-    *(runs.add_list, runs.add_show, folders.add_new, folders.add_ls, folders.add_diff),
+    *(
+        runs.add_list,
+        runs.add_show,
+        folders.add_new,
+        folders.add_inspect_model,
+        folders.add_ls,
+        folders.add_diff,
+    ),
     *(logs.add_inspect, logs.add_verify, runs.add_bench),
     *(studies.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
     *(studies.add_tune, clips.add_import, clips.add_author, clips.add_preview),

@@ -14,6 +14,7 @@ from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config, to_dict
 from rotctl.control import Controller, ControllerSettings
+from rotctl.control.similar import similar
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
@@ -21,6 +22,7 @@ from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance, Push
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
+from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
@@ -71,7 +73,7 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     Raises:
         InputError: parts that do not fit together, with one clear line.
     """
-    control = config.controller
+    control = similar(config.controller, gains_likeness(config.character), _kinds_of(config))
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     model = _varied(config, Variation(config.plant, plant)) if config.plant.differs else known
     require_fit(config, known)
@@ -100,6 +102,15 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
         ),
         run_id=run_id(config, known),
     )
+
+
+def _kinds_of(config: Config) -> dict[str, str]:
+    """Kinds of the behaviour's tasks by the names of their gains; of a roll they are the names."""
+    behaviour = config.behaviour
+    if isinstance(behaviour, RollingSettings):
+        return {}
+    tasks = [behaviour.tasks, *(stage.tasks for stage in behaviour.stages)]
+    return {task.gains or name: task.kind for some in tasks for name, task in some.items()}
 
 
 def require_fit(config: Config, model: Model) -> None:

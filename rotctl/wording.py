@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from rotctl.adopting import Adopted
     from rotctl.log import RunLog
     from rotctl.motion.flight import Flight
     from rotctl.motion.importing import Imported
@@ -128,6 +129,26 @@ _KINDS = {
 _POOR = 10.0  # [deg] median error of a segment that is told
 _DOUBTFUL = 0.8  # of the second axis's share of the first's
 _FALLS = 0.5  # [m/s2] what falls slower does not fall
+
+
+def adopted(found: "Adopted") -> str:
+    """What a foreign humanoid is as a character."""
+    made = found.character
+    lines = [f"{made['name']}  {made['height']:.2f} m, {made['mass']:.1f} kg"]
+    lines += [f"  {role:16} {body}" for role, body in found.roles.items()]
+    lines.append("  joint            the file's; range [rad], torque limit [N m]")
+    for body in made["bodies"]:
+        for joint in body.get("joints", ()):
+            low, high = joint["range"]
+            lines.append(
+                f"  {joint['name']:16} {found.joints[joint['name']]}; {low:.2f} to {high:.2f}, "
+                f"{joint['torque']:g}"
+            )
+    if made["absent"]:
+        lines.append(
+            f"  it has no        {', '.join(made['absent'])}: poses that name them are taken"
+        )
+    return "\n".join([*lines, *(f"  note: {note}" for note in found.notes)])
 
 
 def imported(made: "Imported") -> str:

@@ -244,7 +244,7 @@ def test_unknown_names(world, changes, message):
 def test_wrong_height(world):
     soles, crown = standing_height(world)
     with pytest.raises(InputError) as error:
-        rebuilt(world, height=1.5)
+        rebuilt(world, height=1.5, drawn=None)
     assert str(error.value) == (
         f"character.height is 1.5 m, but the bodies stand {crown - soles:.3f} m tall"
     )
@@ -271,6 +271,6 @@ def test_what_mujoco_refuses_is_one_line(world):
 
 def test_height_within_two_centimetres_passes(world):
     soles, crown = standing_height(world)
-    rebuilt(world, height=crown - soles + 0.019)
+    rebuilt(world, height=crown - soles + 0.019, drawn=None)
     with pytest.raises(InputError, match="tall"):
-        rebuilt(world, height=crown - soles + 0.021)
+        rebuilt(world, height=crown - soles + 0.021, drawn=None)

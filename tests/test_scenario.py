@@ -67,7 +67,7 @@ def test_the_start_is_drawn_from_the_seed_within_its_ranges():
             "controller.solver=osqp or controller.solver=qpsolvers:<name>",
         ),
         (
-            ["character.height=2"],
+            ["character.drawn=null", "character.height=2"],
             "character.height is 2 m, but the bodies stand 1.750 m tall",
         ),
     ],

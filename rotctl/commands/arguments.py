@@ -29,3 +29,13 @@ def log_file(path: Path) -> Path:
     if os.path.isdir(path):
         raise InputError(f"{path}: is a folder; name the log in it, such as {path / 'run.h5'}")
     return path
+
+
+def role_and_name(text: str) -> tuple[str, str]:
+    """left_hip=Bone_7: which joint or body is what."""
+    from rotctl.motion.naming import ROLES
+
+    role, equals, joint = text.partition("=")
+    if role not in ROLES or not equals:
+        raise argparse.ArgumentTypeError(f"{text!r}: valid: ROLE=NAME, of {', '.join(ROLES)}")
+    return role, joint

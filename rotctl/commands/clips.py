@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rotctl.commands.arguments import Commands, folder_name
+from rotctl.commands.arguments import Commands, folder_name, role_and_name
 from rotctl.commands.bars import bar, following
 from rotctl.errors import InputError
 from rotctl.wording import import_warnings, imported, printable
@@ -45,7 +45,7 @@ def add_import(commands: Commands) -> None:
     )
     command.add_argument(
         "--map",
-        type=_role,
+        type=role_and_name,
         action="append",
         default=[],
         metavar="ROLE=NAME",
@@ -193,15 +193,6 @@ def _add_character(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--character", default="adult", metavar="NAME", help="whose joints [%(default)s]"
     )
-
-
-def _role(text: str) -> tuple[str, str]:
-    from rotctl.motion.naming import ROLES
-
-    role, equals, joint = text.partition("=")
-    if role not in ROLES or not equals:
-        raise argparse.ArgumentTypeError(f"{text!r}: valid: ROLE=NAME, of {', '.join(ROLES)}")
-    return role, joint
 
 
 def _seconds(text: str) -> tuple[float, float]:

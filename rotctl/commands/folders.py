@@ -1,9 +1,9 @@
-"""One's own files and results: `new`, `ls`, `diff`."""
+"""One's own files and results: `new`, `inspect-model`, `ls`, `diff`."""
 
 import argparse
 from pathlib import Path
 
-from rotctl.commands.arguments import Commands
+from rotctl.commands.arguments import Commands, role_and_name
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -29,6 +29,50 @@ def new(arguments: argparse.Namespace) -> int:
     from rotctl.own_folder import make
 
     print(make(arguments.kind, arguments.name, arguments.source))
+    return 0
+
+
+def add_inspect_model(commands: Commands) -> None:
+    """Add `inspect-model`."""
+    command = commands.add_parser(
+        "inspect-model",
+        help="what a humanoid of yours (MJCF) is as a character",
+        description="Find pelvis, chest, head and limbs of a humanoid with hinge joints and say "
+        "which of its bodies and joints is which of ours, how strong it is, and what is made up. "
+        "--out writes it as a character, such as conf/character/NAME.yaml, to be changed and "
+        "chosen with character=NAME.",
+    )
+    command.add_argument("file", type=Path, metavar="ROBOT.xml")
+    command.add_argument("--out", type=Path, metavar="NAME.yaml")
+    command.add_argument(
+        "--map",
+        type=role_and_name,
+        action="append",
+        default=[],
+        metavar="ROLE=NAME",
+        help="which body is what, as left_hip=leg_1, where its name does not say",
+    )
+    command.set_defaults(command=inspect_model, interrupted="an unfinished file is not written")
+
+
+def inspect_model(arguments: argparse.Namespace) -> int:
+    """Say what a model is as a character, and write it as one."""
+    import yaml
+
+    from rotctl import files
+    from rotctl.adopting import adopt
+    from rotctl.wording import adopted
+
+    out = arguments.out
+    if out is not None:
+        files.require_ending(out, ".yaml")
+    found = adopt(arguments.file, (out or arguments.file).stem, dict(arguments.map))
+    print(printable(adopted(found)))
+    if out is not None:
+        head = f"# {arguments.file.name} as rotctl inspect-model takes it.\n"
+        text = yaml.safe_dump(found.character, sort_keys=False, default_flow_style=None, width=100)
+        files.replace(out, files.encoded(head + text))
+        print(f"character  {out}")
     return 0
 
 

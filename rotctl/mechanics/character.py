@@ -57,8 +57,25 @@ class Body:
 
 
 @validated(frozen=True, config=STRICT)
+class Drawn:
+    """Whom the numbers of the bodies are of: height [m], mass [kg]."""
+
+    height: Annotated[Positive, Field(le=10)]
+    mass: Annotated[Positive, Field(le=10_000)]
+
+
+@validated(frozen=True, config=STRICT)
 class Character:
-    """All numbers of one character; see `conf/character/adult.yaml` for units and sources."""
+    """All numbers of one character; see `conf/character/adult.yaml` for units and sources.
+
+    Attributes:
+        height, mass: as it is to be; with `drawn`, bodies, joints and gains follow from it by the
+            law of `rotctl.mechanics.stature`.
+        drawn: whom the bodies draw; without, the height must be theirs.
+        gains_for: whom the controller's gains are for, if not the drawn.
+        absent: joints that others have, so that poses name them, and this one has not.
+        strength: factor on all torque limits [-].
+    """
 
     name: str
     height: Annotated[Positive, Field(le=10)]
@@ -71,7 +88,15 @@ class Character:
     exclude_from_control: tuple[str, ...]
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     self_collision: tuple[tuple[str, str], ...] = ()
+    drawn: Drawn | None = None
+    gains_for: Drawn | None = None
+    strength: Annotated[Positive, Field(le=1000)] = 1.0
+    absent: tuple[str, ...] = ()
     description: str = ""
+
+    def __post_init__(self) -> None:
+        if self.drawn and not 0.1 <= self.height / self.drawn.height <= 10.0:
+            raise ValueError(f"height must be within a tenth and ten times {self.drawn.height:g} m")
 
 
 def add_character(spec: mujoco.MjSpec, character: Character) -> None:

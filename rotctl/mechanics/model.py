@@ -17,6 +17,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics import pair_limit
 from rotctl.mechanics.character import Character, add_character
 from rotctl.mechanics.physics import Physics
+from rotctl.mechanics.stature import grown
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
 from rotctl.rotations import Array
 
@@ -48,6 +49,7 @@ class Model:
         touch: control sees the contacts whose gap is below this [m],
         look_ahead: and those that would close within this time [s]; 0 where it does not look.
         ground: what it stands on.
+        absent: joints that this character has not, and poses may name all the same.
     """
 
     mj: mujoco.MjModel
@@ -67,6 +69,7 @@ class Model:
     touch: float
     look_ahead: float
     ground: Ground
+    absent: tuple[str, ...] = ()
 
     def hinges(self, body: int) -> tuple[int, int]:
         """First motor of a body's own joints, and how many it has; none of the root."""
@@ -81,6 +84,8 @@ class Model:
         """
         named = (joint, *(joint + side for side in SIDES))
         motors = [i for i, name in enumerate(self.joint_names) if name in named]
+        if not motors and not joint.endswith(SIDES) and joint in self.absent:
+            return []
         if not motors:
             left, right = SIDES
             bases = sorted({n.removesuffix(left).removesuffix(right) for n in self.joint_names})
@@ -112,6 +117,7 @@ def build(
         InputError: the numbers do not make a model, the model does not stand as tall as it
             says, or a body could touch more of the ground than the engine sees.
     """
+    character = grown(character)
     spec = mujoco.MjSpec()
     spec.modelname = character.name
     spec.compiler.degree = False
@@ -157,6 +163,7 @@ def build(
         touch=physics.touch,
         look_ahead=1.0 / control_rate if physics.closing else 0.0,
         ground=ground,
+        absent=character.absent,
     )
 
 

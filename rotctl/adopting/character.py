@@ -1,0 +1,196 @@
+"""Somebody else's humanoid (MJCF) as a character of ours: plain data, to be changed by hand.
+
+Poses, clips and behaviours name joints by what they do (`hip_y` bends the hip), and are of a body
+that hangs straight at zero angles. So the roles of the bodies are found, by their names or as
+told; the limbs are straightened; every body's frame is put along the world's axes there, its
+origin into its first joint; and joints get our names and signs. The tree is hung on the pelvis,
+whatever it hung on. Masses and joints stay what they are; inertia is that of the shapes.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+
+from rotctl.adopting.names import give_names
+from rotctl.adopting.shapes import numbers, shapes, stature
+from rotctl.adopting.straight import face_forward, straighten
+from rotctl.adopting.tree import Segment, hung
+from rotctl.errors import InputError
+from rotctl.mechanics.foreign import solid
+from rotctl.motion.naming import find_roles
+
+_ADULT = {
+    "waist": 200.0, "chest": 200.0, "spine": 200.0, "neck": 50.0, "hip": 250.0, "knee": 250.0,
+    "ankle": 100.0, "shoulder": 120.0, "elbow": 80.0, "wrist": 20.0, "more": 20.0,
+}  # fmt: skip
+ADULT_HEIGHT, ADULT_MASS = 1.75, 70.0  # whose strength that is [N m], and whose gains there are
+SAME_PLACE = 0.01  # [m] hinges of one body that are farther apart are told
+JOINTS = [
+    *(f"{group}_{letter}" for group in ("waist", "chest", "neck", "shoulder") for letter in "yxz"),
+    *("elbow", "hip_y", "hip_x", "hip_z", "knee", "ankle_y", "ankle_x"),
+]
+TOUCHES = (
+    ("thigh", "chest"), ("thigh", "waist"), ("forearm", "thigh"), ("forearm", "shin"),
+    ("forearm", "chest"), ("forearm", "pelvis"), ("upper_arm", "thigh"), ("thigh", "thigh"),
+    ("shin", "shin"), ("foot", "foot"), ("shin", "pelvis"), ("head", "thigh"), ("head", "shin"),
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Adopted:
+    """A foreign humanoid as ours.
+
+    Attributes:
+        character: plain data as of `conf/character/*.yaml`.
+        roles: role to the file's body.
+        joints: our joint to the file's, of the left side and the middle.
+        notes: what was made up or lost, one line each.
+    """
+
+    character: dict[str, Any]
+    roles: Mapping[str, str]
+    joints: Mapping[str, str]
+    notes: list[str]
+
+
+def adopt(path: Path, name: str, given: Mapping[str, str] | None = None) -> Adopted:
+    """Read a humanoid of hinges.
+
+    Args:
+        name: of the character.
+        given: roles that the user has named, see `rotctl.motion.naming.find_roles`.
+
+    Raises:
+        InputError: it is none, or not symmetric.
+    """
+    mj, notes = solid(path)
+    names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
+    parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
+               for b in range(1, mj.nbody)}  # fmt: skip
+    roles = find_roles(path, _with_ends(parents), given)
+    if "hips" not in (given or {}):  # that of the legs alone: a tree may hang on the chest
+        roles["hips"] = _common(parents, roles["left_hip"], roles["right_hip"])
+    if roles["hips"] == roles["chest"]:
+        raise InputError(
+            f"{path}: legs and arms hang on one body, {roles['hips']}; no waist to bend"
+        )
+    bodies = {role: names.index(body) for role, body in roles.items() if body in names}
+    data = mujoco.MjData(mj)
+    straighten(mj, data, bodies)
+    face_forward(data, bodies)
+    segments = hung(mj, data, bodies["hips"])
+    give_names(segments, bodies, names)
+    notes += _hang_joints(segments)
+    total = float(mj.body_mass[1:].sum())
+    scale = stature(mj, data)
+    made = _character(mj, data, segments, name, total, scale, notes)
+    known = {h.name: h.source for s in segments.values() if s.side != "right" for h in s.hinges}
+    return Adopted(made, roles, known, notes)
+
+
+def _with_ends(parents: Mapping[str, str]) -> dict[str, str]:
+    """Bodies without children get one, as many a robot has no hand that is a body."""
+    leaves = set(parents) - set(parents.values())
+    return {**parents, **{f"{leaf} end": leaf for leaf in parents if leaf in leaves}}
+
+
+def _common(parents: Mapping[str, str], one: str, other: str) -> str:
+    """The nearest body that both hang on."""
+    above = []
+    while one:
+        above.append(one)
+        one = parents[one]
+    while other not in above:
+        other = parents[other]
+    return other
+
+
+def _hang_joints(segments: dict[int, Segment]) -> list[str]:
+    """Notes on hinges that are put into the place of the first of their body."""
+    found = []
+    for segment in segments.values():
+        for hinge in segment.hinges[1:]:
+            apart = float(np.linalg.norm(hinge.anchor - segment.origin))
+            if apart > SAME_PLACE:
+                found.append(
+                    f"{hinge.source} is moved {100 * apart:.0f} cm, to {segment.hinges[0].source}"
+                )
+    return found
+
+
+def _character(
+    mj: mujoco.MjModel,
+    data: mujoco.MjData,
+    segments: dict[int, Segment],
+    name: str,
+    total: float,
+    reach: tuple[float, float],
+    notes: list[str],
+) -> dict[str, Any]:
+    height = float(reach[1] - reach[0])
+    share = total / ADULT_MASS * height / ADULT_HEIGHT
+    bodies, made_up = [], set()
+    for segment in segments.values():
+        if segment.side == "right":
+            continue
+        parent = segments.get(segment.parent)
+        body: dict[str, Any] = {"name": segment.name, "colour": [0.55, 0.6, 0.66]}
+        if parent is not None:
+            body |= {"parent": parent.name, "position": numbers(segment.origin - parent.origin)}
+        if segment.side:
+            body["mirror"] = True
+        joints = []
+        for hinge in segment.hinges:
+            group = hinge.name.partition("_")[0]
+            if hinge.torque is None:
+                made_up.add(hinge.name)
+            joints.append(
+                {
+                    "name": hinge.name,
+                    "axis": numbers(hinge.axis),
+                    "range": numbers([min(hinge.low, -1e-3), max(hinge.high, 1e-3)]),
+                    "torque": round(float(hinge.torque or share * _ADULT[group]), 2),
+                }
+            )
+        body |= {"joints": joints} if joints else {}
+        body["geoms"] = shapes(mj, data, segment, total)
+        bodies.append(body)
+    if made_up:
+        notes.append(
+            f"no torque limit in the file for {', '.join(sorted(made_up))}: as strong as the adult "
+            "for its mass and height"
+        )
+    hinges = [h for s in segments.values() for h in s.hinges]
+    there = {body["name"] for body in bodies}
+    has = {hinge.name for hinge in hinges}
+    absent = [joint for joint in JOINTS if joint not in has]
+    trunk, b = [], next(b for b, s in segments.items() if s.name == "chest")
+    while b >= 0:
+        trunk.append(segments[b].name)
+        b = segments[b].parent
+    damping = float(np.median([h.damping for h in hinges]))
+    damping = damping or share * (height / ADULT_HEIGHT) ** 0.5
+    armature = float(np.median([h.armature for h in hinges]))
+    armature = armature or 0.01 * share * height / ADULT_HEIGHT
+    root = segments[next(iter(segments))]
+    return {
+        "name": name,
+        "height": round(height, 4),
+        "mass": round(total, 4),
+        "gains_for": {"height": ADULT_HEIGHT, "mass": ADULT_MASS},
+        "drawn": {"height": round(height, 4), "mass": round(total, 4)},
+        "strength": 1.0,
+        "root_height": round(float(root.origin[2] - reach[0]), 5),
+        "joint_damping": round(damping, 5),
+        "joint_armature": round(armature, 6),
+        "limit_solref": [0.03, 1.0],
+        "trunk": trunk[::-1],
+        "exclude_from_control": [],
+        "absent": absent,
+        "bodies": bodies,
+        "self_collision": [list(pair) for pair in TOUCHES if set(pair) <= there],
+    }

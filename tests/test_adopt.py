@@ -1,0 +1,206 @@
+"""A foreign humanoid as a character: hung on its pelvis, straightened, with our names and signs."""
+
+from xml.etree import ElementTree
+
+import mujoco
+import numpy as np
+import pytest
+import yaml
+from captures import adult
+from scipy.spatial.transform import Rotation
+
+from rotctl.adopting import adopt
+from rotctl.checked import checked
+from rotctl.cli import main
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.mechanics.character import Character
+from rotctl.run import in_memory
+from rotctl.scenario import build
+
+# The tree hangs on the chest, the arms are out to the sides, elbows bent, motors have gears.
+LEG = """
+<body name="{side}_thigh" pos="0 {y} -0.05">
+  <joint name="{side}_hip_x" axis="1 0 0" range="-30 60"/>
+  <joint name="{side}_hip_y" axis="0 1 0" range="-120 30"/>
+  <geom type="capsule" size="0.06" fromto="0 0 0 0 0 -0.35" mass="5"/>
+  <body name="{side}_shin" pos="0 0 -0.4"><joint name="{side}_knee" axis="0 -1 0" range="-150 2"/>
+    <geom type="capsule" size="0.05" fromto="0 0 0 0 0 -0.33" mass="3"/>
+    <body name="{side}_foot" pos="0 0 -0.4"><joint name="{side}_ankle" axis="0 1 0" range="-40 40"/>
+      <geom type="box" size="0.1 0.04 0.03" pos="0.05 0 -0.03" mass="1"/></body></body></body>"""
+ARM = """
+<body name="{side}_upper_arm" pos="0 {y} 0.15">
+  <joint name="{side}_shoulder_1" axis="1 0 0" range="-170 170"/>
+  <joint name="{side}_shoulder_2" axis="0 1 0" range="-170 170"/>
+  <geom type="capsule" size="0.04" fromto="0 0 0 0 {out} 0" mass="2"/>
+  <body name="{side}_lower_arm" pos="0 {out} 0"><joint name="{side}_elbow" axis="0 0 1"
+    range="-160 160"/>
+    <geom type="capsule" size="0.03" fromto="0 0 0 0.25 0 0" mass="1"/></body></body>"""
+MODEL = """<mujoco><compiler angle="degree"/><option timestep="0.002"/><worldbody>
+<body name="torso" pos="0 0 1.2"><freejoint/>
+  <geom type="capsule" size="0.11" fromto="0 -0.08 0.05 0 0.08 0.05" mass="12"/>
+  <body name="head" pos="0 0 0.25"><joint name="nod" axis="0 1 0" range="-40 40"/>
+    <geom type="sphere" size="0.1" pos="0 0 0.1" mass="4"/></body>
+  <body name="pelvis" pos="0 0 -0.2"><joint name="belly" axis="0 1 0" range="-75 30"
+    pos="0 0 0.1"/>
+    <geom type="capsule" size="0.1" fromto="0 -0.07 0 0 0.07 0" mass="10"/>{legs}</body>{arms}
+</body></worldbody><actuator>{motors}</actuator></mujoco>"""
+
+
+def text(**changes):
+    sides = {"left": 1, "right": -1}
+    legs = "".join(LEG.format(side=s, y=0.1 * k) for s, k in sides.items())
+    arms = "".join(ARM.format(side=s, y=0.18 * k, out=0.28 * k) for s, k in sides.items())
+    joints = ["belly", *(f"{s}_{j}" for s in sides for j in ("hip_x", "hip_y", "knee", "ankle"))]
+    motors = "".join(f'<motor joint="{j}" gear="40" ctrlrange="-2 2"/>' for j in joints)
+    whole = MODEL.format(legs=legs, arms=arms, motors=motors)
+    for old, new in changes.items():
+        whole = whole.replace(old, new)
+    return whole
+
+
+@pytest.fixture
+def robot(tmp_path):
+    path = tmp_path / "robot.xml"
+    path.write_text(text())
+    return path
+
+
+def test_it_hangs_on_the_pelvis_with_our_names_and_signs(robot):
+    found = adopt(robot, "mine")
+    bodies = {body["name"]: body for body in found.character["bodies"]}
+    assert list(bodies)[0] == "pelvis"
+    assert {name: b.get("parent") for name, b in bodies.items()} == {
+        "pelvis": None, "chest": "pelvis", "head": "chest", "thigh": "pelvis", "shin": "thigh",
+        "foot": "shin", "upper_arm": "chest", "forearm": "upper_arm",
+    }  # fmt: skip
+    joints = {j["name"]: j for b in bodies.values() for j in b.get("joints", ())}
+    # The belly bends the pelvis back against the chest by 75 deg: the chest forward on the pelvis.
+    assert joints["waist_y"]["range"] == pytest.approx(np.radians([-30, 75]), abs=1e-4)
+    assert joints["waist_y"]["axis"] == [0, 1, 0]
+    assert joints["hip_y"]["range"] == pytest.approx(np.radians([-30, 120]), abs=1e-4)
+    assert joints["hip_y"]["axis"] == [0, -1, 0]
+    assert joints["knee"]["range"] == pytest.approx(np.radians([-2, 150]), abs=1e-4)
+    assert joints["knee"]["torque"] == 80.0
+    assert found.joints["elbow"] == "left_elbow"
+    # Arms hang: a quarter turn of the shoulder is zero now, and so is one of the elbow.
+    arm = np.array(bodies["forearm"]["position"])
+    assert arm / np.linalg.norm(arm) == pytest.approx([0, 0, -1], abs=0.03)
+    (geom,) = bodies["forearm"]["geoms"]
+    far = np.array(max(geom["start"], geom["end"], key=np.linalg.norm))
+    assert far == pytest.approx([0, 0, -0.25], abs=0.01)
+    assert sum(len(g) for g in (bodies["foot"]["geoms"],)) == 2  # a plate has two edges
+    assert "waist_x" in found.character["absent"]
+    assert any("no torque limit in the file for elbow, neck_y" in note for note in found.notes)
+
+
+def test_it_moves_as_the_file_does(robot):
+    """Every angle by itself: bodies are where the file's own model has them."""
+    found = adopt(robot, "mine")
+    ours = build(load_with(found.character)).model.mj
+    theirs = mujoco.MjModel.from_xml_path(str(robot))
+    names = {"chest": "torso", "head": "head"} | {
+        f"{part}_{s}": f"{side}_{body}"
+        for s, side in (("l", "left"), ("r", "right"))
+        for part, body in (("thigh", "thigh"), ("shin", "shin"), ("foot", "foot"))
+    }
+    generator = np.random.default_rng(0)
+    for joint, source, sign in (
+        ("waist_y", "belly", -1.0), ("hip_y_l", "left_hip_y", -1.0), ("knee_r", "right_knee", -1.0),
+        ("neck_y", "nod", 1.0), ("hip_x_r", "right_hip_x", -1.0),
+    ):  # fmt: skip
+        angle = 0.3 * generator.uniform(0.5, 1.0)
+        a, b = mujoco.MjData(ours), mujoco.MjData(theirs)
+        a.qpos[ours.joint(joint).qposadr], b.qpos[theirs.joint(source).qposadr] = (
+            angle,
+            sign * angle,
+        )
+        for model, data in ((ours, a), (theirs, b)):
+            mujoco.mj_kinematics(model, data)
+
+        def seen(data, names_of_two):
+            hips, other = (data.body(name) for name in names_of_two)
+            return hips.xmat.reshape(3, 3).T @ (other.xipos - hips.xipos)
+
+        for mine, its in names.items():
+            assert seen(a, ("pelvis", mine)) == pytest.approx(seen(b, ("pelvis", its)), abs=2e-3)
+
+
+def load_with(character):
+    from dataclasses import replace
+
+    return replace(load(["duration=0.2"]), character=checked(Character, character))
+
+
+def test_our_own_adult_comes_back(tmp_path):
+    path = tmp_path / "adult.xml"
+    path.write_text(adult().mjcf)
+    found = adopt(path, "again")
+    model = build(load_with(found.character)).model
+    assert sorted(model.joint_names) == sorted(adult().joint_names)
+    assert model.mass == pytest.approx(70.0, abs=0.01)
+    for name in adult().joint_names:
+        i, k = model.joint_names.index(name), adult().joint_names.index(name)
+        assert model.joint_range[i] == pytest.approx(adult().joint_range[k], abs=1e-3)
+        assert model.torque_limit[i] == pytest.approx(adult().torque_limit[k])
+    for body in ("head", "foot_l", "forearm_r", "thigh_l", "shin_r"):
+        assert model.mj.body(body).pos == pytest.approx(adult().mj.body(body).pos, abs=1e-4)
+        assert model.mj.body(body).mass == pytest.approx(adult().mj.body(body).mass, rel=1e-3)
+        assert model.mj.body(body).inertia == pytest.approx(adult().mj.body(body).inertia, rel=0.03)
+    assert not found.character["absent"]
+
+
+def test_one_that_faces_elsewhere_is_turned(tmp_path):
+    root = ElementTree.fromstring(text())
+    x, y, z, w = Rotation.from_euler("z", 130, degrees=True).as_quat()
+    root.find("worldbody/body").set("quat", f"{w} {x} {y} {z}")
+    path = tmp_path / "turned.xml"
+    path.write_text(ElementTree.tostring(root, encoding="unicode"))
+    (tmp_path / "robot.xml").write_text(text())
+    turned, straight = (adopt(tmp_path / f"{name}.xml", "a") for name in ("turned", "robot"))
+    for one, other in zip(turned.character["bodies"], straight.character["bodies"], strict=True):
+        assert one.get("position", [0]) == pytest.approx(other.get("position", [0]), abs=1e-3)
+
+
+def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "conf" / "character").mkdir(parents=True)
+    (tmp_path / "conf" / "rotctl.yaml").write_text("")
+    out = "conf/character/mine.yaml"
+    assert main(["inspect-model", str(robot), "--out", out]) == 0
+    said = capsys.readouterr().out
+    assert "  left_knee        left_shin\n" in said
+    assert "  knee             left_knee; -0.03 to 2.62, 80\n" in said
+    assert said.endswith(f"character  {out}\n")
+    assert yaml.safe_load((tmp_path / out).read_text())["gains_for"] == {"height": 1.75, "mass": 70}
+    assert main(["run", "character=mine", "duration=0.3", "--quiet"]) == 0
+    assert main(["inspect-model", str(robot), "--out", "a.xml"]) == 2
+    assert main(["inspect-model", str(robot), "--map", "left_hip=no"]) == 2
+    assert "--map left_hip=no: no such joint" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("changes", "complaint"),
+    [
+        ({'<joint name="nod" axis="0 1 0" range="-40 40"/>': '<joint name="nod" type="ball"/>'},
+         "joint 'nod' is a ball joint; only hinges can be used"),
+        ({"<freejoint/>": ""}, "its first joint must be the root's freejoint"),
+        ({"left_thigh": "a", "right_thigh": "b", "left_shin": "c", "left_foot": "d"},
+         "no joint for the left hip"),
+    ],
+)  # fmt: skip
+def test_what_is_no_humanoid(tmp_path, changes, complaint):
+    path = tmp_path / "robot.xml"
+    path.write_text(text(**changes))
+    with pytest.raises(InputError) as error:
+        adopt(path, "a")
+    assert complaint in str(error.value)
+
+
+def test_poses_may_name_what_it_has_not(robot):
+    made = build(load_with(adopt(robot, "mine").character))
+    assert made.model.motors("chest_y", "a pose") == []
+    assert len(made.model.motors("knee", "a pose")) == 2
+    with pytest.raises(InputError, match="a pose names the unknown joint 'tail'"):
+        made.model.motors("tail", "a pose")
+    assert not in_memory(made)[1]

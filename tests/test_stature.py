@@ -1,0 +1,90 @@
+"""Another height, weight and strength: the same motion, slower, by the law of similarity."""
+
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.control.similar import similar
+from rotctl.errors import InputError
+from rotctl.mechanics.stature import Likeness, grown, likeness
+from rotctl.run import in_memory, make
+from rotctl.scenario import build, model_of
+
+CHILD = ("character.height=1.2", "character.mass=23")
+GIANT = ("character.height=7.0", "character.mass=4480")  # 4 times as tall, 64 times as heavy
+
+
+def test_as_drawn_nothing_changes():
+    character = load([]).character
+    assert likeness(character).same
+    assert grown(character) is character
+    config = load([])
+    assert similar(config.controller, Likeness(), {}) is config.controller
+
+
+def test_a_body_grows_as_a_whole():
+    adult, child = model_of(load([])).mj, model_of(load(list(CHILD))).mj
+    size, mass = 1.2 / 1.75, 23.0 / 70.0
+    for name, power in (("body_pos", size), ("geom_size", size), ("body_ipos", size)):
+        assert getattr(child, name)[1:] == pytest.approx(
+            power * getattr(adult, name)[1:], rel=1e-4, abs=1e-6
+        ), name
+    assert child.body_mass == pytest.approx(mass * adult.body_mass, rel=1e-4)
+    assert child.body_inertia == pytest.approx(mass * size**2 * adult.body_inertia, rel=1e-4)
+    assert child.actuator_ctrlrange == pytest.approx(
+        mass * size * adult.actuator_ctrlrange, rel=1e-4
+    )
+    assert child.dof_damping == pytest.approx(mass * size**1.5 * adult.dof_damping, rel=1e-4)
+
+
+def test_strength_is_of_the_motors_alone():
+    weak, usual = model_of(load(["character.strength=0.5"])), model_of(load([]))
+    assert weak.torque_limit == pytest.approx(0.5 * usual.torque_limit)
+    assert np.array_equal(weak.mj.body_mass, usual.mj.body_mass)
+    assert np.array_equal(weak.mj.dof_damping, usual.mj.dof_damping)
+
+
+@pytest.mark.parametrize("behaviour", ["forward_roll_1", "stand"])
+def test_the_first_torques_of_a_giant_are_the_adults_grown(behaviour):
+    """At rest in the same posture, with no command: the same problem in other units."""
+    size, mass = 4.0, 64.0
+    rest = ("start=rest", "behaviour.speed=0", "behaviour.angular_velocity=0")
+    still = rest if behaviour == "forward_roll_1" else ("start.speed_x=[0,0]", "start.scatter=0")
+    first = []
+    for other, time in (((), 1.0), (GIANT, 2.0)):
+        # The physics, too, takes steps as much longer, and its contacts are as much softer.
+        rate = f"controller.rate={60 / time:g}"
+        soft = f"physics.contact_solref=[{0.02 * time:g},1.0]"
+        stops = f"character.limit_solref=[{0.03 * time:g},1.0]"
+        config = load([f"behaviour={behaviour}", *still, *other, rate, soft, stops, "duration=0.5"])
+        first.append(in_memory(build(config))[0].trajectory.ctrl[0])
+    if behaviour == "forward_roll_1":  # aims of staged behaviours are in metres, and stay
+        assert first[1] == pytest.approx(mass * size * first[0], rel=2e-3, abs=0.05 * mass * size)
+    else:
+        assert not np.allclose(first[1], mass * size * first[0], rtol=0.1)
+
+
+@pytest.mark.parametrize("who", [CHILD, ("character.height=2.0", "character.mass=110")])
+def test_a_child_and_a_tall_adult_roll(who):
+    results = [make(load([*who, "duration=4", f"seed={seed}"])).summary for seed in (2000, 2001)]
+    assert all(result["revolutions"] > 1.5 for result in results)
+
+
+def test_gains_have_their_units():
+    settings = load([]).controller
+    by = Likeness(size=4.0, mass=3.0)
+    found = similar(settings, by, {})
+    assert found.pose.stiffness == pytest.approx(settings.pose.stiffness / 4)
+    assert found.pose.damping == pytest.approx(settings.pose.damping / 2)
+    assert found.pose.weight == pytest.approx(settings.pose.weight / 144)
+    assert found.tasks["spin"].weight[0] == pytest.approx(settings.tasks["spin"].weight[0] / 144)
+    assert found.tasks["linear"].weight[0] == pytest.approx(1 / 9)
+    assert found.thresholds.force == pytest.approx(3 * settings.thresholds.force)
+    assert found.thresholds.separation == pytest.approx(2 * settings.thresholds.separation)
+    turned = similar(settings, by, {"spin": "attitude"})
+    assert turned.tasks["spin"].weight[0] == pytest.approx(settings.tasks["spin"].weight[0] * 16)
+
+
+def test_a_height_that_is_none():
+    with pytest.raises(InputError, match=r"height must be within a tenth and ten times 0\.74 m"):
+        load(["character=baby", "character.height=9"])
