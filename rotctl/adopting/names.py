@@ -86,7 +86,8 @@ def _name_limb(
     for k, body in enumerate(members):
         part = starts.get(k, part)
         groups[body] = part
-        if k + 1 == len(members) or k + 1 in starts:  # the last one before the next joint
+        last_of_it = k + 1 == len(members) or k + 1 in starts  # before the next joint
+        if last_of_it and k >= min(starts):  # a collar bone is before the first
             ours[body] = OUR_BODIES.get(f"left_{part}", "")
     below = [b for b in segments if b not in members and last in _chain(segments, b)]
     groups |= dict.fromkeys(below, part)
