@@ -11,6 +11,7 @@ import numpy as np
 from rotctl.adopting.tree import Hinge, Segment
 
 LETTERS = "xyz"
+ALIKE = 0.5  # cosine of a hinge's axis with ours, from which it bears its letter
 # Signs of our joints' axes, of a left limb: bending is positive.
 _AXES = {
     "waist": (1, 1, 1), "chest": (1, 1, 1), "neck": (1, 1, 1), "hip": (1, -1, 1),
@@ -123,6 +124,8 @@ def _joint_names(segments: dict[int, Segment], groups: Mapping[int, str]) -> Non
             hinge, k = max(
                 ((h, k) for h in left for k in free), key=lambda pair: abs(pair[0].axis[pair[1]])
             )
+            if abs(hinge.axis[k]) < ALIKE:  # toes that bend as the ankle does
+                break
             _called(hinge, f"{group}_{LETTERS[k]}", k, group)
             left.remove(hinge)
             free.discard(k)
