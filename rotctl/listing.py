@@ -62,7 +62,8 @@ def own(folder: Path | None) -> Iterator[None]:
         InputError: there is no such folder.
     """
     before = os.environ.get(OWN)
-    found = folder or (Path("conf") if not before and Path("conf", MARK).is_file() else None)
+    usual = not before and Path("conf", MARK).is_file() and not is_shipped(Path("conf"))
+    found = folder or (Path("conf") if usual else None)
     if found:
         if not found.is_dir():
             raise InputError(f"--config-dir={found}: no such folder")
@@ -73,6 +74,11 @@ def own(folder: Path | None) -> Iterator[None]:
         if found:
             os.environ.pop(OWN)
             os.environ.update({OWN: before} if before else {})
+
+
+def is_shipped(folder: Path) -> bool:
+    """Whether it is rotctl's own folder of configs, as in a clone of it."""
+    return folder.is_dir() and folder.samefile(conf_dir())
 
 
 def named_files(folder: str) -> dict[str, Path]:

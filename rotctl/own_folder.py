@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rotctl import __version__, documents, files
 from rotctl.errors import InputError
-from rotctl.listing import MARK, groups, named_file, named_files, own_dir
+from rotctl.listing import MARK, groups, is_shipped, named_file, named_files, own_dir
 
 MARKED = """\
 # Your own configs for rotctl: behaviour/, character/, terrain/, start/, ..., clips in motion/,
@@ -45,7 +45,7 @@ def make(kind: str, name: str, source: str) -> Path:
     folder = own_dir() or Path("conf")
     path = folder / kind / f"{name}.yaml"
     with files.folder(path.parent, linked=True):
-        if own_dir() is None and not (folder / MARK).exists():
+        if own_dir() is None and not is_shipped(folder) and not (folder / MARK).exists():
             files.replace(folder / MARK, MARKED.encode())
         copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"
         files.replace(path, (text if text.startswith("# @") else copied + text).encode())

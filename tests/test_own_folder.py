@@ -1,6 +1,7 @@
 """A folder of one's own: choices beside ours, begun as copies; runs listed and compared."""
 
 import os
+import shutil
 
 import numpy as np
 import pytest
@@ -64,6 +65,17 @@ def test_a_conf_that_is_not_marked_is_somebody_elses(here, cli):
     assert cli("--config-dir", "conf", "show", "start=my_start")[0] == 0
     assert cli("show", "start=my_start", "--config-dir", here / "conf")[0] == 0
     assert cli("--config-dir", "no", "list")[2] == "rotctl: --config-dir=no: no such folder\n"
+
+
+def test_in_a_clone_a_copy_is_one_of_ours(here, cli, monkeypatch):
+    """There ./conf is what comes with rotctl: nothing in it is marked as the user's."""
+    shutil.copytree(conf_dir(), here / "conf")
+    monkeypatch.setattr(listing, "conf_dir", lambda: here / "conf")
+    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")
+    assert (code, said) == (0, "conf/behaviour/my_roll.yaml\n")
+    assert not (here / "conf" / listing.MARK).exists()
+    assert "my_roll" in listing.choices("behaviour")
+    assert listing.own_dir() is None
 
 
 def test_a_name_of_ours_is_not_taken(here, cli):
