@@ -33,9 +33,12 @@ def sweep(rng, samples, here):
                            "groups.csv", "experiment-y.yaml", "x/run.h5", "run.h5"))  # fmt: skip
         (here / "d" / name).parent.mkdir(exist_ok=True)
         other(rng, here / "d" / name, here)
-    command = rng.choices(["summarise", "report", "sweep", "by"], [45, 30, 20, 5])[0]
+    commands = {"summarise": 40, "report": 30, "sweep": 15, "judge": 10, "by": 5}
+    command = rng.choices([*commands], [*commands.values()])[0]
     if command == "sweep":
         return Case(["sweep", *samples.overrides, "--out", "d"], simulates=True)
+    if command == "judge":
+        return Case(["judge", "d", rng.choice(("criteria.stall_time=1", "criteria=standing"))])
     if command == "by":
         return Case(["summarise", "d", "--by", f"behaviour,{text(rng)}".replace("\0", "?")])
     into = rng.choice((["--out", "o"], ["--out", "d"], []))
