@@ -8,7 +8,9 @@ from rotctl import config
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.listing import choices
+from rotctl.sweep.assignments import quickly
 from rotctl.sweep.points import points
+from rotctl.sweep.values import values
 
 
 def overrides(*grid):
@@ -137,3 +139,21 @@ def test_a_value_that_is_wrong_is_told_as_for_a_single_run(bad):
     with pytest.raises(InputError) as among:
         list(points([["start=rest,tucked", bad]]))
     assert str(among.value) == str(alone.value)
+
+
+@pytest.mark.parametrize(
+    "override",
+    ["seed=3", "seed=1,2,10", "seed=range(0,5)", "seed=range(-2,1)", "duration=0.50,1.0,2.5",
+     "start=rest,tucked", "behaviour=stand", "behaviour.roll_about=left,right"],
+)  # fmt: skip
+def test_what_needs_no_hydra_is_what_hydra_makes_of_it(override):
+    assert quickly(override) == values(override)
+
+
+@pytest.mark.parametrize(
+    "override",
+    ["seed=range(5,0)", "seed=range(0,9,2)", "seed=range(0,1000000)", "start=no", "start=glob(*)",
+     "seed=1,", "a=x y", "+a=1", "a='x,y'", "a=[1,2]", "a=choice(1,2)", "seed", "seed=1 ,2"],
+)  # fmt: skip
+def test_all_other_syntax_is_left_to_hydra(override):
+    assert quickly(override) is None

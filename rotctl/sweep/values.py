@@ -1,0 +1,66 @@
+"""One override with one or more values -> each value by itself, as Hydra reads it."""
+
+from itertools import islice
+
+from hydra.core.override_parser.types import Glob, Override, OverrideType, Transformer
+
+from rotctl import plain
+from rotctl.errors import InputError
+from rotctl.listing import choices
+from rotctl.overrides import parsed
+from rotctl.sweep.assignments import MOST_POINTS, Assignment
+
+
+def values(override: str) -> list[Assignment]:
+    """The single overrides that one with several values stands for.
+
+    Raises:
+        InputError: it cannot be read, or stands for none.
+    """
+    found = parsed(override)
+    key = str(found.key_or_group)
+    if not found.is_sweep_override():
+        return [_assignment(override, found)]
+    if not found.is_discrete_sweep():
+        raise InputError(f"{override}: has no steps; write {key}=range(start,stop,step)")
+    pattern = found.value()
+    if isinstance(pattern, Glob):
+        valid = choices(key)
+        names = pattern.filter(valid)
+        if not names:
+            some = f"no choice matches; valid: {', '.join(valid)}" if valid else "no such group"
+            raise InputError(f"{override}: {some}")
+        return [_read(f"{found.get_key_element()}={name}") for name in names]
+    texts = list(islice(found.sweep_string_iterator(), MOST_POINTS + 1))
+    if not texts:
+        raise InputError(f"{override}: has no values")
+    element = found.get_key_element()
+    way, ordered = _way(found)
+    each = list(islice(found.sweep_iterator(Transformer.identity), len(texts)))
+    return [
+        Assignment(f"{element}={text}", key, way, value, ordered)
+        if way is not None and type(value) in (bool, int, float)
+        else _read(f"{element}={text}")
+        for text, value in zip(texts, each, strict=True)
+    ]
+
+
+def _read(override: str) -> Assignment:
+    return _assignment(override, parsed(override))
+
+
+def _assignment(text: str, found: Override) -> Assignment:
+    way, ordered = _way(found)
+    value = found.value()
+    if isinstance(value, dict):
+        way = None
+        ordered = True
+    return Assignment(text, str(found.key_or_group), way, value, ordered)
+
+
+def _way(found: Override) -> tuple[plain.Way | None, bool]:
+    """The way to the value that an override sets, if that is all; whether its order may matter."""
+    group = bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
+    if found.type != OverrideType.CHANGE or found.package or group:
+        return None, bool(found.package) or not group
+    return plain.way(str(found.key_or_group)), False
