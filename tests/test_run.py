@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -403,3 +405,16 @@ def test_numpy_does_not_warn_of_what_the_log_tells(tmp_path, capfd):
     result = run(load(["duration=0.5", "physics.gravity=[0,0,-1e13]"]), tmp_path)
     assert result.broke_down
     assert capfd.readouterr() == ("", "")
+
+
+def test_a_run_imports_no_more_than_it_needs(tmp_path):
+    """Each of these takes from a twentieth to a half of a second of every start."""
+    heavy = ("hydra", "omegaconf", "scipy", "pandas", "matplotlib", "PIL", "glfw", "osqp", "jinja2")
+    code = (
+        "import sys\n"
+        "from rotctl.cli import main\n"
+        f"main(['run', 'duration=0.1', 'behaviour=stand', '--quiet', '--out', {str(tmp_path)!r}])\n"
+        f"print([name for name in {heavy} if name in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

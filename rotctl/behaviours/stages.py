@@ -13,7 +13,7 @@ from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
-from rotctl.motion.mirror import exchanged, mirrored_angles
+from rotctl.motion.sides import exchanged, mirrored_angles
 from rotctl.settings import STRICT, NonNegative, Vector
 
 

@@ -1,17 +1,12 @@
-"""The mirror image of a motion or of a pose, and the symmetric part of a motion."""
-
-from collections.abc import Mapping
-from typing import TypeVar
+"""The mirror image of a motion, and its symmetric part."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.mechanics.model import SIDES, Model
-from rotctl.motion.pose_pair import Turn
+from rotctl.mechanics.model import Model
+from rotctl.motion.sides import other_side, sign_of
 from rotctl.motion.turning import Motion
 from rotctl.rotations import Array
-
-Value = TypeVar("Value")
 
 _IN_MIRROR = np.array([1.0, -1.0, 1.0, -1.0])  # of w, x, y, z: a turn is a pseudo-vector
 
@@ -31,36 +26,8 @@ def symmetric(model: Model, motion: Motion) -> Motion:
     return Motion(poses, Rotation.from_quat(quaternions, scalar_first=True))
 
 
-def other_side(name: str) -> str:
-    """The name of a joint's mirror image; its own, if it is of no side or of both."""
-    left, right = SIDES
-    return name[:-2] + (right if name.endswith(left) else left) if name.endswith(SIDES) else name
-
-
-def exchanged(values: Mapping[str, Value]) -> dict[str, Value]:
-    """What is said of joints, by name, said of their mirror images."""
-    return {other_side(name): value for name, value in values.items()}
-
-
-def mirrored_angles(model: Model, angles: Mapping[str, Turn]) -> dict[str, Turn]:
-    """The mirror image of a pose by joint name [rad]."""
-    names = model.joint_names
-    return {
-        name: angle * (_sign(model, names.index(name)) if name in names else 1.0)
-        for name, angle in exchanged(angles).items()
-    }
-
-
 def _mirrored_poses(model: Model, poses: Array) -> Array:
     names = model.joint_names
     source = [names.index(other_side(name)) for name in names]
-    sign = [_sign(model, i) for i in range(len(names))]
+    sign = [sign_of(model, i) for i in range(len(names))]
     return np.asarray(poses[:, source] * sign)
-
-
-def _sign(model: Model, motor: int) -> float:
-    """By which an angle of a motor goes over to its mirror image."""
-    if model.joint_names[motor].endswith(SIDES):  # their axes are mirror images already
-        return 1.0
-    axis = np.abs(model.mj.jnt_axis[1 + motor])
-    return 1.0 if axis[1] >= max(axis[0], axis[2]) else -1.0
