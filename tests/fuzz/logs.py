@@ -114,8 +114,9 @@ def _with_a_log(rng, here):
     if rng.random() < 0.03:
         other(rng, here / "run.h5", here)
     command = rng.choices(
-        ["inspect", "replay", "plot", "strip", "summarise", "report", "verify", "again", "video"],
-        [30, 25, 12, 6, 12, 5, 5, 4, 1],
+        ["inspect", "replay", "plot", "strip", "summarise", "report", "verify", "again", "video"]
+        + ["export"],
+        [30, 25, 12, 6, 12, 5, 5, 4, 1, 10],
     )[0]
     if command in ("summarise", "report"):
         (here / "d" / "x").mkdir(parents=True)
@@ -123,6 +124,8 @@ def _with_a_log(rng, here):
         return Case([command, "d"], drawn=rng.choice((0, 0, 1)))
     if command == "strip":
         return Case(["render", "run.h5", "--filmstrip", "x.png", "--frames", "2"])
+    if command == "export":
+        return Case(["export", "run.h5", "--to", rng.choice(("bvh", "csv", "npz", "gltf", "mjcf"))])
     if command == "video":
         return Case(["render", "run.h5", "--video", "x.mp4"])
     if command == "again":

@@ -1,8 +1,11 @@
 """The good input that hostile input is made of."""
 
+import io
 import json
 from pathlib import Path
 from types import SimpleNamespace
+
+import numpy as np
 
 from rotctl import listing
 from rotctl.config import load, to_dict
@@ -103,6 +106,24 @@ def _captures():
         "m.asf": ASF.encode(),
         "m.amc": AMC.encode(),
         "m.json": json.dumps({"Loop": "wrap", "Frames": rolling}).encode(),
+        **_robots_captures(),
+    }
+
+
+def _robots_captures():
+    """A roll as joints of a model, with the model, and as rotation vectors."""
+    from captures import adult, in_order
+
+    roll = in_order("forward_roll", 1.2, frames=40)
+    table = np.hstack([roll[:, :3], np.roll(roll[:, 3:7], -1, axis=1), roll[:, 7:]])
+    joints, vectors = io.BytesIO(), io.BytesIO()
+    np.savez(joints, qpos=roll, frequency=60.0)
+    np.savez(vectors, poses=np.tile([0.1, 1.0, 0.2], (40, 22)), trans=roll[:, :3], fps=60)
+    return {
+        "m.csv": "\n".join(",".join(f"{x:.5f}" for x in row) for row in table).encode(),
+        "m.npz": joints.getvalue(),
+        "n.npz": vectors.getvalue(),
+        "m.xml": adult().mjcf.encode(),
     }
 
 

@@ -43,8 +43,11 @@ def capture(rng, samples, here):
     (here / name).write_bytes(mangled(rng, samples.captures[name]))
     if rng.random() < 0.05:
         other(rng, here / name, here)
-    file = {"m.asf": "m.amc"}.get(name, name)
-    return Case(["import-motion", file, "--out", "c.yaml"])
+    if name == "m.xml" and rng.random() < 0.7:
+        return Case(["inspect-model", "m.xml", "--out", "c.yaml"])
+    file = {"m.asf": "m.amc", "m.xml": "m.csv"}.get(name, name)
+    robot = ["--model", "m.xml"] if file in ("m.csv", "m.npz") else []
+    return Case(["import-motion", file, "--out", "c.yaml", *robot])
 
 
 def conf(rng, samples, here):
