@@ -41,7 +41,7 @@ TO_ZERO = 0.03  # [1/rad] weight of each angle: decides what the directions leav
 TO_PREVIOUS = 0.1  # [1/rad] weight of each angle's change since the last frame
 DAMPING = 1e-3  # at first, of Levenberg and Marquardt
 ITERATIONS = 40
-FIRST_ITERATIONS = 300  # the first frame starts from the upright pose
+START_ITERATIONS = 80  # where there is no frame before
 LONGEST = 0.5  # [rad] of a step
 ENOUGH = 1e-4  # [rad] a smaller step ends the iterations
 GAIN = np.radians(0.5)  # that another start must bring
@@ -123,7 +123,7 @@ class Fit:
         weights = self.weights if weights is None else weights
         position, damping = start.copy(), DAMPING
         rows, misses = self._system(position, targets, before, to_previous, weights)
-        for _ in range(ITERATIONS if to_previous else FIRST_ITERATIONS):
+        for _ in range(ITERATIONS if to_previous else START_ITERATIONS):
             step = self._step(rows, misses, position[7:], damping)
             moved = position.copy()
             mujoco.mj_integratePos(self.mj, moved, np.append(np.zeros(3), step), 1.0)

@@ -20,7 +20,8 @@ from rotctl.motion.turning import Motion
 from rotctl.rotations import Array
 
 STUCK = np.radians(2.0)  # an error of a limb from which other starts are tried
-RETRY = 5  # frames, after a start that brought nothing: the joints' ranges may not allow more
+RETRY = 5  # frames, after starts that brought nothing, and twice as many each time that they do:
+LONGEST_WAIT = 160  # the joints' ranges may not allow more, and a noisy file would take for ever
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,8 @@ def retarget(
     )
     n = len(targets)
     positions, errors = np.empty((n, model.mj.nq)), np.empty((n, len(SEGMENTS)))
-    position, waits = fit.afresh(targets[0]), [0] * len(fit.limbs)
+    position = fit.afresh(targets[0])
+    waits, patience = [0] * len(fit.limbs), [RETRY] * len(fit.limbs)
     for i in range(n):
         position = fit.solve(position, targets[i], TO_PREVIOUS if i else 0.0)
         for k, limb in enumerate(fit.limbs):
@@ -76,10 +78,11 @@ def retarget(
                     key=lambda tried: fit.limb_error(limb, tried, targets[i]),
                 )
             if fit.limb_error(limb, better, targets[i]) < stuck - GAIN:
-                position = better
+                position, patience[k] = better, RETRY
                 _mend(fit, limb, targets, positions[:i], errors, position)
             else:
-                waits[k] = RETRY
+                waits[k] = patience[k]
+                patience[k] = min(2 * patience[k], LONGEST_WAIT)
         positions[i], errors[i] = position, fit.error(position, targets[i])
         if progress:
             progress(i + 1, n)
