@@ -107,9 +107,10 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
 def _kinds_of(config: Config) -> dict[str, str]:
     """Kinds of the behaviour's tasks by the names of their gains; of a roll they are the names."""
     behaviour = config.behaviour
-    if isinstance(behaviour, RollingSettings):
+    staged = behaviour.finish if isinstance(behaviour, RollingSettings) else behaviour
+    if staged is None:
         return {}
-    tasks = [behaviour.tasks, *(stage.tasks for stage in behaviour.stages)]
+    tasks = [staged.tasks, *(stage.tasks for stage in staged.stages)]
     return {task.gains or name: task.kind for some in tasks for name, task in some.items()}
 
 
@@ -119,16 +120,19 @@ def require_fit(config: Config, model: Model) -> None:
     Raises:
         InputError: criteria judge other motions or bodies, or a push comes too late.
     """
-    rolls = isinstance(config.behaviour, RollingSettings)
-    if rolls != (config.criteria.kind == "rolling"):
-        wanted = (
-            "criteria=rolling" if rolls else "criteria=standing, landing, flip, dive or orientation"
-        )
+    behaviour, judged = config.behaviour, config.criteria.kind
+    wanted = ["standing", "landing", "flip", "dive", "orientation"]
+    if isinstance(behaviour, RollingSettings):
+        wanted = ["rolling"] if behaviour.finish is None else ["finish"]
+    if judged not in wanted:
+        *first, last = wanted
+        choices = f"{', '.join(first)} or {last}" if first else last
         raise InputError(
-            f"criteria={config.criteria.name} does not judge behaviour={config.behaviour.name}, "
-            f"a behaviour of kind {config.behaviour.kind}; choose {wanted}"
+            f"criteria={config.criteria.name} does not judge behaviour={behaviour.name}, "
+            f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
+            f"choose criteria={choices}"
         )
-    stands = getattr(config.criteria, "landing", config.criteria)
+    stands = getattr(config.criteria, "landing", getattr(config.criteria, "stand", config.criteria))
     for name in getattr(stands, "feet", ()):
         models.body_id(model.mj, name, "criteria.feet")
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):

@@ -32,7 +32,7 @@ def readable(summary: dict[str, Any]) -> str:
         for key in ("behaviour", "seed", "run_id", "failure_reason")
     )
     verdict = "success" if summary["success"] else f"FAILED: {reason}"
-    if summary.get("criteria", "rolling") == "rolling":
+    if summary.get("criteria", "rolling") in ("rolling", "finish"):
         measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
             f"{number('angular_velocity_mean')} rev/s "
@@ -42,6 +42,12 @@ def readable(summary: dict[str, Any]) -> str:
             f"drift {number('lateral_drift')} m",
             f"  stall        {number('longest_stall')} s at most",
         ]
+        if "finish_commanded" in summary:
+            measured.append(
+                f"  stands up    from {number('stands_from', '.1f')} s "
+                f"(commanded from {number('finish_commanded', '.1f')}), "
+                f"{number('stands_at')} m high in the end"
+            )
     else:
         from rotctl.metrics.judge import COLUMNS  # numpy: what only asks for help needs none
 

@@ -71,6 +71,27 @@ CASES = {
     ),
     "noslip": Case(("physics.noslip_iterations=3",), r"physics\.noslip_.*"),
     "clip": Case(("behaviour=forward_roll_2",), r"behaviour\.(?!align_with_slope).*"),
+    "pace that waits": Case(
+        ("behaviour=forward_roll", "behaviour.angular_velocity=0.4"),
+        r"behaviour\.pace\.(?!most|travel).*",
+        seconds=2.5,
+    ),
+    "pace that hurries": Case(
+        ("behaviour=forward_roll", "behaviour.angular_velocity=1.4"),
+        r"behaviour\.pace\.(most|travel)",
+        seconds=1.5,
+    ),
+    "finish": Case(
+        (
+            "behaviour=forward_roll",
+            "+finish=stand",
+            "behaviour.finish.after=0.3",
+            "behaviour.finish.reach=1",
+            "behaviour.finish.turning=1",
+        ),
+        r"behaviour\.finish\.(after|reach|turning|within)",
+        seconds=1.5,
+    ),
     "slope": Case(("behaviour=decline",), r"terrain\..*|behaviour\.align_with_slope"),
     "posture": Case(
         ("start=still",),

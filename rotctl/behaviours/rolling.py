@@ -22,13 +22,15 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
 from rotctl.behaviours.facing import UP, frame_of
+from rotctl.behaviours.finishing import Finishing, FinishSettings
+from rotctl.behaviours.pacing import SLIP, Clock, Pace, PaceSettings
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.errors import InputError
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import Model, body_ids
 from rotctl.mechanics.state import State
 from rotctl.motion import (
     PosePair,
@@ -56,6 +58,8 @@ class RollingSettings:
         angular_momentum: commanded in-plane in place of the angular velocity [kg m2/s]; AV by
             default, section 7.
         align_with_slope: whether that speed is along the slope (section 6) or level.
+        pace: how one of the two is kept, whatever the body makes of the pair; none is by default.
+        finish: how a roll with a pace ends.
     """
 
     name: str
@@ -68,26 +72,44 @@ class RollingSettings:
     poses: Poses | None = None
     reference: ReferenceSettings | None = None
     angular_momentum: Finite | None = None
+    pace: PaceSettings | None = None
+    finish: FinishSettings | None = None
     source: str = ""
     description: str = ""
 
     def __post_init__(self) -> None:
         if (self.poses is None) == (self.reference is None):
             raise ValueError("give either poses or a reference, not both and not neither")
+        if self.pace:
+            if min(self.angular_velocity, self.speed) < 0.0:
+                raise ValueError(
+                    "a pace is kept forward: give angular_velocity and speed from 0 on"
+                )
+            if self.angular_momentum is not None:
+                raise ValueError("a pace commands velocities: give no angular_momentum")
+        if self.finish:
+            if self.pace is None:
+                raise ValueError("a roll without a pace does not wait, so that it has no finish")
+            self.finish.staged(self.roll_about, self.heading)
 
     @property
     def commanded(self) -> dict[str, float]:
-        """What is asked for, as columns of the summary [rev/s, m/s]."""
-        return {
+        """What is asked for, as columns of the summary [rev/s, m/s, s]."""
+        asked = {
             "angular_velocity_commanded": self.angular_velocity,
             "speed_commanded": self.speed,
         }
+        return asked if self.finish is None else asked | {"finish_commanded": self.finish.after}
 
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
-    ) -> "Rolling":
+    ) -> "Rolling | Finishing":
         """The behaviour of one run."""
-        return Rolling(self, model, control, measured)
+        roll = Rolling(self, model, control, measured)
+        if self.finish is None:
+            return roll
+        staged = self.finish.staged(self.roll_about, self.heading)
+        return Finishing(self.finish, roll, staged, model, control, measured)
 
 
 class RollingMemory(NamedTuple):
@@ -104,6 +126,7 @@ class RollingMemory(NamedTuple):
     origin: Array
     angle: Array
     axis: Array
+    clock: Clock = Clock(0.0)
 
 
 class Rolling:
@@ -134,7 +157,14 @@ class Rolling:
         self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * self._left
         self._slope = math.atan(math.tan(model.ground.slope) * axes[0, 0])  # along the way
         along = self._slope if settings.align_with_slope else 0.0
-        self._velocity = settings.speed * (math.cos(along) * axes[0] + math.sin(along) * UP)
+        self._way = math.cos(along) * axes[0] + math.sin(along) * UP
+        self._velocity = settings.speed * self._way
+        given = settings.pace
+        self._pace = (
+            Pace(given, settings.angular_velocity, settings.speed) if given is not None else None
+        )
+        self._over = body_ids(model.mj, list(given.over), "behaviour.pace.over") if given else []
+        self._travel = given.travel if given is not None and given.keep == "speed" else 0.0
         self._poses = _poses(settings, model)
         gains = gains_of(control, self.tasks)
         by_momentum = settings.angular_momentum is not None
@@ -153,6 +183,7 @@ class Rolling:
         )
         self._targets = self._tasks["target"][:, :3]  # views: cheaper than fields, step by step
         self._velocities = self._tasks["velocity"]
+        self._damping, self._usual = self._tasks["damping"], self._tasks["damping"].copy()
         self._control, self._held_out = control, model.excluded
 
     def start(self, pitch: float) -> Placement:
@@ -164,10 +195,28 @@ class Rolling:
         """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
         line = state.momentum.com - dot(self._left, state.momentum.com) * self._left
         now = excursion.start(pitch, self._left)
-        return RollingMemory(now, line, now.angle, self._axis(state))
+        return RollingMemory(
+            now, line, now.angle, self._axis(state), Clock(self._come(now, state, line))
+        )
 
-    def advance(self, before: RollingMemory, state: State) -> RollingMemory:
-        """Memory now, from that of the previous control step."""
+    def _come(self, now: Excursion, state: State, origin: Array) -> float:
+        """How far it has come along what its pace keeps [rev]."""
+        if self._travel:
+            along = state.momentum.com - origin
+            return float(dot(self.axes[0], along)) / self._travel
+        return float(dot(self._left, now.angle)) / math.tau
+
+    def ahead(self, state: State) -> float:
+        """How far the centre of mass is ahead of what its pace waits over [m]."""
+        middle = state.data.xipos[self._over].mean(axis=0)
+        return float(dot(self.axes[0], state.momentum.com - middle))
+
+    def from_waiting(self, memory: RollingMemory) -> float:
+        """How far it is before the phase in which its pace waits, at most half [rev]."""
+        return self._pace.before(memory.excursion.phase) if self._pace else 0.0
+
+    def advance(self, before: RollingMemory, state: State, goes: bool = True) -> RollingMemory:
+        """Memory now, from that of the previous control step; `goes` on, or waits for good."""
         axis = self._axis(state)
         now = excursion.integrate(
             before.excursion,
@@ -181,12 +230,25 @@ class Rolling:
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
         if self._measured.measure == "root":
             now = excursion.on_root(now, state.position[3:7], self._frame.orientation)
-        return RollingMemory(now, before.origin, before.angle, axis)
+        clock = before.clock
+        if self._pace:
+            come = self._come(now, state, before.origin)
+            clock = self._pace.tick(clock, come, state.time, self._period)
+            if not goes:
+                clock = Clock(come - SLIP, -SLIP)
+        return RollingMemory(now, before.origin, before.angle, axis, clock)
 
-    def command(self, memory: RollingMemory, state: State) -> Command:
-        """What rolling wants at this instant."""
+    def command(self, memory: RollingMemory, state: State, place: float | None = None) -> Command:
+        """What rolling wants at this instant; `place` as in `Pace.at`."""
         now, measure = memory.excursion, self._measured.measure
         pose_a, pose_b = self._poses.at(now.phase)
+        if self._pace:
+            wanted = self._pace.at(now.phase, self.ahead(state), memory.clock.late, state.time)
+            self._velocities[0] = wanted.speed * self._way
+            self._velocities[1] = math.tau * wanted.rate * self._left
+            self._damping[:] = self._usual
+            self._damping[0, 0] *= wanted.brake
+            self._damping[1, 1] *= wanted.brake
         self._targets[0] = memory.origin + state.time * self._velocity
         target = memory.angle + state.time * self._angular_velocity  # phi_hat
         self._targets[1] = excursion.error(now, target, self._left, measure)

@@ -9,19 +9,25 @@ import mujoco
 import numpy as np
 from pydantic import Field
 
-from rotctl.metrics import appearance, dive, flip, orientation, pace, rolling, standing
+from rotctl.metrics import appearance, dive, finish, flip, orientation, pace, rolling, standing
 from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
+from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 
 Criteria = Annotated[
-    DiveCriteria | FlipCriteria | OrientationCriteria | RollingCriteria | StandingCriteria,
+    DiveCriteria
+    | FinishCriteria
+    | FlipCriteria
+    | OrientationCriteria
+    | RollingCriteria
+    | StandingCriteria,
     Field(discriminator="kind"),
 ]
-_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive)
+_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive, finish)
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
@@ -58,14 +64,20 @@ def judge(
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
     asked = dict(commanded)
-    if isinstance(criteria, RollingCriteria):
-        rolled = rolling.measure(log, criteria, commanded["angular_velocity_commanded"], period)
-        found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
-        del found["stalled_at"]  # of people's interest in a reason alone
+    if isinstance(criteria, RollingCriteria | FinishCriteria):
         direction = commanded["angular_velocity_commanded"]
+        if isinstance(criteria, FinishCriteria):
+            found, reason = finish.judge(log, criteria, commanded, period)
+            log = finish.rolled(log, commanded["finish_commanded"])
+            settle = criteria.roll.settle
+        else:
+            rolled = rolling.measure(log, criteria, direction, period)
+            found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
+            del found["stalled_at"]  # of people's interest in a reason alone
+            settle = criteria.settle
         found |= vars(appearance.measure(log, mj, direction, period))
-        means = rolled.angular_velocity_mean, rolled.speed_mean
-        found |= pace.measure(log, means, commanded, criteria.settle)
+        means = found["angular_velocity_mean"], found["speed_mean"]
+        found |= pace.measure(log, means, commanded, settle)
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
         found, reason = dict(vars(stood)), standing.failure(stood, criteria, steps * period)

@@ -1,0 +1,139 @@
+"""A roll that ends on its feet: it waits in the squat, and from there stages take over.
+
+What it is to do then are stages as in `rotctl.behaviours.staged`, mostly one that balances and
+rises. Until they begin the run is the roll's alone, and what they want is no part of it.
+"""
+
+from dataclasses import field
+from math import tau
+from typing import TYPE_CHECKING, Annotated, NamedTuple
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.behaviour import Placement, Signals
+from rotctl.behaviours.staged import Staged, StagedMemory, StagedSettings
+from rotctl.behaviours.stages import Stage, TaskSettings
+from rotctl.behaviours.support import pendulum_rate
+from rotctl.control import Command, ControllerSettings
+from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.motion import RollAbout
+from rotctl.rotations import dot
+from rotctl.settings import STRICT, Finite, NonNegative, Positive
+
+if TYPE_CHECKING:  # which makes this one
+    from rotctl.behaviours.rolling import Rolling, RollingMemory
+
+
+@validated(frozen=True, config=STRICT)
+class FinishSettings:
+    """How a roll ends.
+
+    Attributes:
+        after: from then on it waits when it next comes to its feet [s].
+        ahead: of what the pace waits over, where the centre of mass then waits [m].
+        reach: the stages take over when the capture point along the way is so near to the middle of
+            what the pace waits over [m],
+        turning: the whole body turns less fast [rev/s],
+        within: and the phase is so near to that in which it waits [rev].
+        tasks, stages: as a staged behaviour has them.
+    """
+
+    after: NonNegative
+    ahead: Finite
+    reach: Positive
+    turning: Positive
+    within: Positive
+    stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
+    tasks: dict[str, TaskSettings] = field(default_factory=dict)
+
+    def staged(self, roll_about: RollAbout, heading: Finite) -> StagedSettings:
+        """The stages as a behaviour of their own.
+
+        Raises:
+            ValueError: they make none.
+        """
+        return StagedSettings("finish", "staged", roll_about, heading, self.stages, self.tasks)
+
+
+class FinishingMemory(NamedTuple):
+    """What it remembers.
+
+    Attributes:
+        roll: of the roll.
+        end: of the stages; None before they begin.
+    """
+
+    roll: "RollingMemory"
+    end: StagedMemory | None = None
+
+
+class Finishing:
+    """A roll and its end in one run."""
+
+    def __init__(
+        self,
+        settings: FinishSettings,
+        roll: "Rolling",
+        staged: StagedSettings,
+        model: Model,
+        control: ControllerSettings,
+        measured: ExcursionSettings,
+    ) -> None:
+        """Prepare the stages.
+
+        Raises:
+            InputError: a body or a joint is not there, or a task has no gains.
+        """
+        self._settings, self._roll, self._model = settings, roll, model
+        self._end = Staged(staged, model, control, measured)
+        self.axes = roll.axes
+        ends = [f"{name} at the end" if name in roll.tasks else name for name in self._end.tasks]
+        self.tasks = (*roll.tasks, *ends)
+
+    def start(self, pitch: float) -> Placement:
+        """As the roll."""
+        return self._roll.start(pitch)
+
+    def begin(self, pitch: float, state: State) -> FinishingMemory:
+        """Memory at the start."""
+        return FinishingMemory(self._roll.begin(pitch, state))
+
+    def advance(self, before: FinishingMemory, state: State) -> FinishingMemory:
+        """Memory now; the stages begin where the roll waits on its feet."""
+        if before.end is not None:
+            return FinishingMemory(before.roll, self._end.advance(before.end, state))
+        over = state.time >= self._settings.after
+        roll = self._roll.advance(before.roll, state, goes=not over)
+        if over and self._waits(roll, state):
+            return FinishingMemory(roll, self._end.begin(roll.excursion.phase, state))
+        return FinishingMemory(roll)
+
+    def _waits(self, roll: "RollingMemory", state: State) -> bool:
+        s, momentum = self._settings, state.momentum
+        speed = float(dot(self.axes[0], momentum.com_velocity))
+        capture = self._roll.ahead(state) + speed / pendulum_rate(self._model, state)
+        turning = abs(float(dot(self.axes[1], momentum.angular_velocity))) / tau
+        off = abs(self._roll.from_waiting(roll))
+        return abs(capture) < s.reach and turning < s.turning and off < s.within
+
+    def command(self, memory: FinishingMemory, state: State) -> Command:
+        """What the roll or its end wants at this instant."""
+        rolling = len(self._roll.tasks)
+        if memory.end is None:
+            over = state.time >= self._settings.after
+            place = self._settings.ahead if over else None
+            command = self._roll.command(memory.roll, state, place)
+            return command._replace(slots=list(range(rolling)))
+        command = self._end.command(memory.end, state)
+        slots = command.slots or []
+        return command._replace(slots=[rolling + slot for slot in slots])
+
+    def signals(self, memory: FinishingMemory, state: State) -> Signals:
+        """What the log keeps of it; the stages are numbered after the roll, which is 0."""
+        if memory.end is None:
+            return self._roll.signals(memory.roll, state)
+        signals = self._end.signals(memory.end, state)
+        return signals._replace(stage=signals.stage + 1)

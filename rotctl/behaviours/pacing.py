@@ -1,0 +1,155 @@
+"""A roll that keeps a commanded pace: it flows by itself, and waits over its feet until it is time.
+
+A body that rolls is slow over its feet and quick over its back, whatever it is commanded, and at
+half its own pace it does not get up from the seat. So the commanded velocities here swing over the
+phase as the motion's own do, and a clock that runs on at the commanded pace says what there is to
+wait for or to make good in the squat.
+"""
+
+from bisect import bisect_right
+from itertools import pairwise
+from math import cos, pi, tau
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.settings import STRICT, Finite, NonNegative, Positive
+
+Share = Annotated[NonNegative, Field(le=1)]
+SLIP = 0.5  # [rev] the clock is never further ahead or behind: it does not run away from a stall
+
+
+@validated(frozen=True, config=STRICT)
+class PaceSettings:
+    """How a commanded pace is kept.
+
+    Attributes:
+        keep: which of the two commanded velocities is met; the other follows from `travel`.
+        travel: what the body covers in a revolution [m].
+        own: the motion's own pace; what is commanded slower waits [rev/s].
+        calm: share of it that is held back all the way when it has to wait long [-].
+        swing, swing_from: share of the angular velocity that it gains and loses over a
+            revolution, and the phase where it is slowest [-, rev].
+        surge, surge_from: the same of the speed [-, rev].
+        wait, width: phase in which it waits, and how far to either side it does not flow [rev].
+        over: bodies over which it waits; a name without a side is both.
+        ahead: of their middle, where the centre of mass then is [m].
+        settling: rates at which it comes to that phase and that place [1/s].
+        brake: how much stiffer the dampers along the way are while it waits [-].
+        gain: of what is waited or made good, for a revolution that it is off the clock [1/rev].
+        most: how much quicker it may go there [-].
+        schedule: times and what is commanded from then on in place of the kept velocity
+            [s, rev/s or m/s].
+    """
+
+    keep: Literal["rate", "speed"]
+    travel: Positive
+    own: Positive
+    calm: Annotated[NonNegative, Field(lt=1)]
+    swing: Share
+    swing_from: Finite
+    surge: Share
+    surge_from: Finite
+    wait: Finite
+    width: Annotated[Positive, Field(le=0.5)]
+    over: Annotated[tuple[str, ...], Field(min_length=1)]
+    ahead: Finite
+    settling: tuple[NonNegative, NonNegative]
+    brake: Annotated[Positive, Field(ge=1)]
+    gain: NonNegative
+    most: Annotated[Positive, Field(ge=1)]
+    schedule: Annotated[tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000)] = ()
+
+    def __post_init__(self) -> None:
+        times = [time for time, _ in self.schedule]
+        if any(later <= time for time, later in pairwise(times)):
+            raise ValueError("schedule: its times must grow")
+
+
+class Clock(NamedTuple):
+    """Where a roll should be.
+
+    Attributes:
+        due: how far it should have come [rev].
+        late: how much of it is missing [rev].
+    """
+
+    due: float
+    late: float = 0.0
+
+
+class Wanted(NamedTuple):
+    """What a pace asks for at one instant.
+
+    Attributes:
+        rate: angular velocity [rev/s].
+        speed: [m/s].
+        brake: on the dampers along the way [-].
+    """
+
+    rate: float
+    speed: float
+    brake: float
+
+
+class Pace:
+    """The pace of one run."""
+
+    def __init__(self, settings: PaceSettings, rate: float, speed: float) -> None:
+        """For a commanded angular velocity [rev/s] and speed [m/s]."""
+        self._settings = s = settings
+        per = 1.0 if s.keep == "rate" else s.travel
+        self._times = [time for time, _ in s.schedule]
+        first = rate if s.keep == "rate" else speed
+        self._rates = [each / per for each in (first, *(value for _, value in s.schedule))]
+
+    def commanded(self, time: float) -> float:
+        """What is commanded at a time [s], as an angular velocity [rev/s]."""
+        return self._rates[bisect_right(self._times, time)]
+
+    def tick(self, clock: Clock, come: float, time: float, period: float) -> Clock:
+        """The clock now, a period after it was `clock`.
+
+        Args:
+            come: how far the roll has come [rev].
+            time: now [s].
+            period: [s].
+        """
+        late = clock.due + self.commanded(time) * period - come
+        late = min(max(late, -SLIP), SLIP)
+        return Clock(come + late, late)
+
+    def before(self, phase: float) -> float:
+        """How far a phase [rad] is before the one in which it waits, at most half [rev]."""
+        return (self._settings.wait - phase / tau + 0.5) % 1.0 - 0.5
+
+    def at(
+        self, phase: float, ahead: float, late: float, time: float, place: float | None = None
+    ) -> Wanted:
+        """What to ask for.
+
+        Args:
+            phase: [rad].
+            ahead: of the bodies it waits over, where the centre of mass is [m].
+            late: see `Clock` [rev].
+            time: [s].
+            place: of them, where it waits, if not as the settings have it [m].
+        """
+        s = self._settings
+        wait_at = s.ahead if place is None else place
+        turn = phase / tau
+        before = self.before(phase)
+        here = 0.5 + 0.5 * cos(pi * before / s.width) if abs(before) < s.width else 0.0
+        share = min(max(1.0 + s.gain * late, 0.0), s.most)
+        early = max(1.0 - share, 0.0)
+        flow = max(s.own, self.commanded(time)) * (1.0 - s.calm * early)
+        base = flow * (1.0 + (max(share, 1.0) - 1.0) * here)
+        rate = base * (1.0 - s.swing * cos(tau * (turn - s.swing_from)))
+        speed = s.travel * base * (1.0 - s.surge * cos(tau * (turn - s.surge_from)))
+        waits = here * early
+        return Wanted(
+            rate + waits * (s.settling[0] * before - rate),
+            speed + waits * (s.settling[1] * (wait_at - ahead) - speed),
+            1.0 + waits * (s.brake - 1.0),
+        )

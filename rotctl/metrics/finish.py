@@ -1,0 +1,104 @@
+"""A roll that ends standing, in numbers: it rolls until it is told to end, and then stays up."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.metrics import rolling, standing
+from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.standing import StandingCriteria
+from rotctl.settings import STRICT, Positive
+
+COLUMNS = (
+    Column("finish_commanded", "Told to end on its feet", "s"),
+    Column("stands_from", "Begins to stand up", "s"),
+    Column("stands_at", "Height of the centre of mass in the end", "m"),
+    Column("lean_end", "Largest lean of the trunk in the end", "deg"),
+    Column("speed_end", "Speed of the centre of mass in the end", "m/s"),
+)
+
+
+@validated(frozen=True, config=STRICT)
+class FinishCriteria:
+    """Limits of a roll that ends standing; see `conf/criteria/finish.yaml`.
+
+    Attributes:
+        roll: of what is rolled before it is told to end.
+        stand: of its rest on the feet in the end.
+        height: least of the centre of mass above the ground then [m].
+    """
+
+    name: str
+    kind: Literal["finish"]
+    roll: RollingCriteria
+    stand: StandingCriteria
+    height: Positive
+    description: str = ""
+
+
+@dataclass(frozen=True)
+class _Part:
+    """Some rows of a log."""
+
+    log: Arrays
+    rows: slice
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Those rows of one array."""
+        whole = np.asarray(self.log[name])
+        return whole if name.startswith(("model/", "events/")) else whole[self.rows]
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is one of that name."""
+        return name in self.log
+
+
+def rolled(log: Arrays, told: float) -> Arrays:
+    """What comes before it is told to end [s]."""
+    return _Part(log, slice(0, int(np.searchsorted(floats(log, "trajectory/time"), told))))
+
+
+def begins(log: Arrays) -> int:
+    """The row in which it begins to stand up; the number of rows, if it never does."""
+    ends = np.asarray(log["command/stage"]) > 0
+    return int(np.argmax(ends)) if ends.any() else len(ends)
+
+
+def judge(
+    log: Arrays, criteria: FinishCriteria, commanded: Mapping[str, float], period: float
+) -> tuple[dict[str, Any], str]:
+    """Columns of a run, and why it is no success; empty if it is one.
+
+    Args:
+        commanded: what was asked for; see `RollingSettings.commanded`.
+        period: of the control [s].
+    """
+    row, steps = begins(log), len(np.asarray(log["command/stage"]))
+    part = rolled(log, commanded["finish_commanded"])
+    roll = rolling.measure(part, criteria.roll, commanded["angular_velocity_commanded"], period)
+    rest = max(row, steps - round(criteria.stand.rest / period))
+    end = _Part(log, slice(rest, None))
+    settings = replace(criteria.stand, height=1e-3)  # of what it was at first: a squat
+    stood = standing.measure(end, settings, period)
+    com, ground = floats(end, "trajectory/com"), floats(end, "trajectory/ground_height")
+    height = float((com[:, 2] - ground).min()) if len(com) else math.nan
+    reason = (
+        rolling.failure_reason(roll, criteria.roll, roll.duration)
+        or ("never stood up" if row == steps else "")
+        or standing.failure(stood, settings, (steps - rest) * period)
+        or ("" if height > criteria.height else f"stands {height:.2f} m high")
+    )
+    columns = asdict(roll) | {"duration": steps * period}
+    del columns["stalled_at"]  # of people's interest in a reason alone
+    ended = {
+        "stands_from": row * period if row < steps else math.nan,
+        "stands_at": height,
+        "lean_end": stood.lean_end,
+        "speed_end": stood.speed_end,
+    }
+    return columns | ended, reason

@@ -1,0 +1,81 @@
+"""A roll that ends standing, judged on logs made by hand."""
+
+import numpy as np
+import pytest
+from test_rolling_metrics import CRITERIA, PERIOD, make_log
+
+from rotctl.metrics.finish import FinishCriteria, judge
+from rotctl.metrics.standing import StandingCriteria
+
+ASKED = {
+    "angular_velocity_commanded": 0.5,
+    "speed_commanded": 0.9,
+    "finish_commanded": 8.0,
+}
+STAND = StandingCriteria("test", "landing", ("foot_l",), rest=2.0, height=0.8, lean=20.0, speed=0.3)
+FINISH = FinishCriteria(name="test", kind="finish", roll=CRITERIA, stand=STAND, height=0.85)
+STEPS, TOLD, STANDS = 960, 480, 600  # rows: told to end at 8 s, begins to stand up at 10 s
+
+
+def log_of(height=0.95, stands=STANDS, turns=None, lean=0.0, speed=0.0, touched="foot_l"):
+    """Rolls at 0.5 rev/s until it is told, waits, and from 12 s on is up at a height [m]."""
+    time = PERIOD * np.arange(STEPS)
+    steady = 0.5 * np.minimum(time, PERIOD * TOLD)
+    log = make_log(steps=STEPS, turns=steady if turns is None else turns)
+    up = np.full(STEPS, 0.4)
+    up[720:] = height
+    log["trajectory/com"][:, 2] = 7.0 + up
+    axes = np.tile(np.eye(3), (STEPS, 1, 1))
+    axes[:, 2, 2] = np.cos(np.radians(lean))
+    none = np.zeros((STEPS, 3))
+    body = np.full((STEPS, 3), -1, dtype=np.int32)
+    body[840:, 0] = ["world", "foot_l", "head"].index(touched)
+    stage = np.zeros(STEPS, dtype=np.int32)
+    stage[stands:] = 1
+    return log | {
+        "trajectory/time": time,
+        "trajectory/trunk_axes": axes,
+        "trajectory/com_velocity": none + [speed, 0.0, 0.0],
+        "contacts/body": body,
+        "command/stage": stage,
+        "model/body": np.array([b"world", b"foot_l", b"head"]),
+    }
+
+
+def test_a_roll_that_stands_up():
+    columns, reason = judge(log_of(), FINISH, ASKED, PERIOD)
+    assert reason == ""
+    assert columns["revolutions"] == pytest.approx(4.0, abs=0.02), "until it is told"
+    assert columns["duration"] == pytest.approx(16.0)
+    assert columns["stands_from"] == pytest.approx(10.0)
+    assert columns["stands_at"] == pytest.approx(0.95)
+    assert columns["longest_stall"] < 0.3, "to wait is no stall"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"stands": STEPS}, "never stood up"),
+        ({"height": 0.7}, "stands 0.70 m high"),
+        ({"lean": 30.0}, "leans by 30 deg at the end"),
+        ({"speed": 0.5}, "still moves at 0.50 m/s at the end"),
+        ({"touched": "head"}, "touched the ground with more than the feet for 2.00 s"),
+        ({"stands": 900}, "ends after 1.00 s, is to rest for 2"),
+        (
+            {"turns": 0.5 * PERIOD * np.minimum(np.arange(STEPS), 240)},
+            "stalled for 4.05 s from t = 3.93 s",
+        ),
+    ],
+)
+def test_what_it_does_instead(changes, said):
+    assert judge(log_of(**changes), FINISH, ASKED, PERIOD)[1] == said
+
+
+def test_what_never_began_has_no_numbers():
+    empty = {
+        name: rows if name.startswith("model/") else rows[:0] for name, rows in log_of().items()
+    }
+    columns, reason = judge(empty, FINISH, ASKED, PERIOD)
+    assert reason
+    assert np.isnan(columns["stands_from"])
+    assert np.isnan(columns["stands_at"])
