@@ -12,7 +12,7 @@ from rotctl.linear import NotPositiveDefiniteError, product, solve
 RNG = np.random.default_rng(5)
 PACKAGE = Path(rotctl.__file__).parent
 # Of no run: they draw, count, search, export, import. A clip once imported is the same everywhere.
-NO_PART_OF_A_RUN = {"bench", "export", "report", "results", "sweep", "tune"}
+NO_PART_OF_A_RUN = {"adopting", "bench", "export", "report", "results", "sweep", "tune"}
 OF_A_RUN_IN_MOTION = {"__init__", "clip", "pose_pair", "reference", "untrusted"}
 BLAS = {
     *("linalg", "dot", "vdot", "inner", "matmul", "tensordot", "vecdot", "matvec", "vecmat"),

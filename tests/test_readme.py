@@ -33,7 +33,8 @@ def test_runs(line, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("line", [line for line in COMMANDS if line not in RUNS])
-def test_other_commands(line, capsys):
+def test_other_commands(line, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)  # not into our own conf/
     try:
         code = main(shlex.split(line))
     except SystemExit as end:  # argparse ends --help itself
