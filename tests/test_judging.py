@@ -12,6 +12,7 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
+from rotctl.metrics import judge as metrics
 from rotctl.results.index import read
 from rotctl.run import run
 from rotctl.scenario import model_of, run_id
@@ -119,3 +120,10 @@ def test_a_run_with_other_criteria_is_judged_and_not_simulated(tmp_path):
 def test_points_that_differ_in_criteria_alone_are_refused():
     with pytest.raises(InputError, match="two points differ in their criteria alone"):
         planned(points([["seed=1", "criteria.stall_time=1,2"]]))
+
+
+def test_a_column_means_the_same_whoever_judges():
+    found = {}
+    for kind in metrics._KINDS:
+        for column in kind.COLUMNS:
+            assert found.setdefault(column.name, column) == column

@@ -151,4 +151,4 @@ def test_who_lands_as_flips_do_stands(momentum, speed):
     buffer, breakdown = in_memory(scenario)
     summary = summarise(scenario, buffer, breakdown, 1.0)
     assert summary["failure_reason"] == ""
-    assert summary["height_least"] < 0.9  # it takes up the fall
+    assert summary["stature_least"] < 0.9  # it takes up the fall

@@ -19,7 +19,7 @@ COLUMNS = (
     Column("stands_from", "Begins to stand up", "s"),
     Column("stands_at", "Height of the centre of mass in the end", "m"),
     Column("lean_end", "Largest lean of the trunk in the end", "deg"),
-    Column("speed_end", "Speed of the centre of mass in the end", "m/s"),
+    Column("speed_end", "Fastest of the centre of mass over the time it is to rest", "m/s"),
 )
 
 

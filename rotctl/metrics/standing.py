@@ -14,10 +14,10 @@ COLUMNS = (
     Column("lean_most", "Largest lean of the trunk", "deg"),
     Column("lean_end", "Largest lean of the trunk in the end", "deg"),
     Column("sway", "Furthest of the centre of mass from where it began", "m"),
-    Column("speed_end", "Speed of the centre of mass in the end", "m/s"),
+    Column("speed_end", "Fastest of the centre of mass over the time it is to rest", "m/s"),
     Column("other_contact", "Time with anything but the feet on the ground", "s"),
-    Column("height_least", "Lowest of the centre of mass, as a share of its height at first", ""),
-    Column("height_end", "The same in the end", ""),
+    Column("stature_least", "Lowest of the centre of mass, as a share of its height at first", ""),
+    Column("stature_end", "Lowest of it in the end, as a share of that", ""),
 )
 
 
@@ -53,8 +53,8 @@ class StandingMetrics:
     sway: float
     speed_end: float
     other_contact: float
-    height_least: float
-    height_end: float
+    stature_least: float
+    stature_end: float
 
 
 def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingMetrics:
@@ -75,8 +75,8 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
         sway=float(sway.max()),
         speed_end=float(speed[last].max()),
         other_contact=float(_on_others(log, criteria.feet).sum() * period),
-        height_least=float(height.min() / height[0]),
-        height_end=float(height[last].min() / height[0]),
+        stature_least=float(height.min() / height[0]),
+        stature_end=float(height[last].min() / height[0]),
     )
 
 
@@ -91,7 +91,7 @@ def _on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
 def failure(metrics: StandingMetrics, criteria: StandingCriteria, duration: float) -> str:
     """Why it did not stay up; empty if it did. `duration` is the run's [s]."""
     m, c = metrics, criteria
-    low = m.height_least if c.kind == "standing" else m.height_end
+    low = m.stature_least if c.kind == "standing" else m.stature_end
     rules = (
         (
             m.other_contact == 0.0,
