@@ -1,5 +1,7 @@
 """Turns that no launch gives are refused; what is refused really falls short."""
 
+from math import radians
+
 import pytest
 from flights import HEAD_FIRST, flier, fly
 
@@ -66,3 +68,15 @@ def test_what_is_refused_falls_short_in_the_air(turns, short):
     """Of 10 m, with all that legs give, turned already as far as is allowed for."""
     landed = fly(flier(turns, HEAD_FIRST), MOST, height=11.05, up=2.2, pitch=GONE)
     assert landed.error < -20.0 if short else abs(landed.error) < 5.0
+
+
+def test_the_longer_the_shape_the_more_momentum_it_asks_for():
+    """Of one and a half turns from 10 m, in 1.7 s; straight it is refused."""
+    dive = ("behaviour=dive_forward", f"{KEY}=540")
+    tuck, pike = (
+        build(load([*dive, f"behaviour.shape={shape}"])).behaviour._laws["flight"]
+        for shape in ("tuck", "pike")
+    )
+    turns = radians(540.0)
+    assert 1.2 < pike.least_momentum(turns, GONE, 1.7) / tuck.least_momentum(turns, GONE, 1.7) < 3.0
+    assert "180 is possible here" in refusal(*dive, "behaviour.shape=straight")

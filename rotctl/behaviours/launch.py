@@ -127,6 +127,7 @@ class Whirl:
         most: that legs give [kg m2/s], as measured: what needs more is refused.
         least: it is so much, where less would do [kg m2/s]: what a launch gives across the way by
             mistake is then a small part of it, and the body flies longer than planned.
+        ceiling: no more is asked for, whatever the flight needs [kg m2/s]; 0 sets none.
     """
 
     law: Literal["whirl"]
@@ -136,6 +137,7 @@ class Whirl:
     calm: NonNegative
     most: Positive
     least: NonNegative = 0.0
+    ceiling: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
@@ -145,7 +147,9 @@ class Whirl:
         momentum, about = scene.state.momentum, scene.turning
         launch, flight = self.parts(scene.aims, scene.laws)
         wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
-        wanted = copysign(min(max(abs(wanted), self.least), self.most), scene.target)
+        wanted = copysign(max(abs(wanted), self.least), scene.target)
+        if self.ceiling:
+            wanted = min(max(wanted, -self.ceiling), self.ceiling)
         along = dot(momentum.angular, about)
         rate = -self.calm * (momentum.angular - along * about)
         rate += (wanted - along) / launch.left(scene) * about
