@@ -33,7 +33,6 @@ class FinishSettings:
 
     Attributes:
         after: from then on it waits when it next comes to its feet [s].
-        ahead: of what the pace waits over, where the centre of mass then waits [m].
         reach: the stages take over when the capture point along the way is so near to the middle of
             what the pace waits over [m],
         turning: the whole body turns less fast [rev/s],
@@ -42,7 +41,6 @@ class FinishSettings:
     """
 
     after: NonNegative
-    ahead: Finite
     reach: Positive
     turning: Positive
     within: Positive
@@ -123,9 +121,7 @@ class Finishing:
         """What the roll or its end wants at this instant."""
         rolling = len(self._roll.tasks)
         if memory.end is None:
-            over = state.time >= self._settings.after
-            place = self._settings.ahead if over else None
-            command = self._roll.command(memory.roll, state, place)
+            command = self._roll.command(memory.roll, state)
             return command._replace(slots=list(range(rolling)))
         command = self._end.command(memory.end, state)
         slots = command.slots or []

@@ -124,9 +124,7 @@ class Pace:
         """How far a phase [rad] is before the one in which it waits, at most half [rev]."""
         return (self._settings.wait - phase / tau + 0.5) % 1.0 - 0.5
 
-    def at(
-        self, phase: float, ahead: float, late: float, time: float, place: float | None = None
-    ) -> Wanted:
+    def at(self, phase: float, ahead: float, late: float, time: float) -> Wanted:
         """What to ask for.
 
         Args:
@@ -134,10 +132,8 @@ class Pace:
             ahead: of the bodies it waits over, where the centre of mass is [m].
             late: see `Clock` [rev].
             time: [s].
-            place: of them, where it waits, if not as the settings have it [m].
         """
         s = self._settings
-        wait_at = s.ahead if place is None else place
         turn = phase / tau
         before = self.before(phase)
         here = 0.5 + 0.5 * cos(pi * before / s.width) if abs(before) < s.width else 0.0
@@ -150,6 +146,6 @@ class Pace:
         waits = here * early
         return Wanted(
             rate + waits * (s.settling[0] * before - rate),
-            speed + waits * (s.settling[1] * (wait_at - ahead) - speed),
+            speed + waits * (s.settling[1] * (s.ahead - ahead) - speed),
             1.0 + waits * (s.brake - 1.0),
         )

@@ -238,8 +238,8 @@ class Rolling:
                 clock = Clock(come - SLIP, -SLIP)
         return RollingMemory(now, before.origin, before.angle, axis, clock)
 
-    def command(self, memory: RollingMemory, state: State, place: float | None = None) -> Command:
-        """What rolling wants at this instant; `place` as in `Pace.at`."""
+    def command(self, memory: RollingMemory, state: State) -> Command:
+        """What rolling wants at this instant."""
         now, measure = memory.excursion, self._measured.measure
         pose_a, pose_b = self._poses.at(now.phase)
         if self._pace:
