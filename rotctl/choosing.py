@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import documents, files, plain
+from rotctl.errors import InputError
 from rotctl.listing import conf_dir, content, named_file
 
 _KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
@@ -22,6 +23,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _NO_WORDS = ("true", "false", "null", "inf", "nan")  # what YAML or Hydra takes for more
 _ELSEWHERE = re.compile(r"override /(\w+)@_global_\.\1")
 SELF, MISSING = "_self_", "???"
+IN_A_CIRCLE = "defaults: a file builds on itself, or on what builds on it"
 
 
 class Assignment(NamedTuple):
@@ -55,6 +57,8 @@ def composed(chosen: Iterable[Assignment]) -> dict[str, Any] | None:
         return _composed(dict(chosen))
     except _NotPlainError:
         return None
+    except RecursionError:
+        raise InputError(IN_A_CIRCLE) from None
 
 
 class _NotPlainError(Exception):
@@ -127,11 +131,12 @@ def _read(path: Path, changed: int) -> _File:
     """A file as it was at some time."""
     data = content(path)
     others, asks = [], {}
-    for entry in data.get("defaults", [SELF]):
+    defaults = data.get("defaults", [SELF])
+    for entry in defaults if isinstance(defaults, list) else [None]:
         if isinstance(entry, str) and entry.isidentifier():
             others.append(entry)
             continue
-        if not isinstance(entry, dict) or len(entry) > 1:
+        if not isinstance(entry, dict) or len(entry) != 1:
             raise _NotPlainError
         ((key, name),) = entry.items()
         match = _ELSEWHERE.fullmatch(key)

@@ -165,7 +165,7 @@ def _stamp(among: tuple[Path, ...]) -> tuple[int, ...]:
     """When each file of some folders was changed."""
     forms = ("*.yaml", "*/*.yaml")
     paths = [path for folder in among for form in forms for path in sorted(folder.glob(form))]
-    return tuple(path.stat().st_mtime_ns for path in paths)
+    return tuple(path.stat().st_mtime_ns if path.exists() else 0 for path in paths)
 
 
 def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
@@ -182,6 +182,8 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
             data: Any = OmegaConf.to_container(config, resolve=True, throw_on_missing=True)
     except MissingMandatoryValue as error:
         raise InputError(f"{error.full_key}: missing, give it as {error.full_key}=VALUE") from None
+    except RecursionError:
+        raise InputError(choosing.IN_A_CIRCLE) from None
     except (HydraException, OmegaConfBaseException, ValueError) as error:
         raise InputError(_explain(error, found)) from None
     return data

@@ -92,7 +92,8 @@ def named_files(folder: str) -> dict[str, Path]:
     found: dict[str, Path] = {}
     for place in places:
         for path in sorted(place.glob("*.yaml")):
-            found.setdefault(path.stem, path)
+            if not path.name.startswith("."):  # editors keep locks and copies so
+                found.setdefault(path.stem, path)
     return found
 
 

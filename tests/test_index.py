@@ -210,3 +210,16 @@ def test_two_indices_joined_are_one(made, tmp_path):
     joined = (made / "runs.jsonl").read_bytes() + (other / "runs.jsonl").read_bytes()
     (tmp_path / "runs.jsonl").write_bytes(joined)
     assert rows(tmp_path) == {**rows(made), **rows(other)}
+
+
+@pytest.mark.parametrize(("keys", "levels"), [("x", 3000), ("xy", 40)])
+def test_parts_that_name_parts_stay_as_small_as_a_config(tmp_path, keys, levels):
+    """One in the other they would be deeper, or larger, than any reader bears."""
+    lines = [checked({"name": "z0", "is": {"a": 1}})]
+    for level in range(1, levels):
+        inner = {key: {"=": f"z{level - 1}"} for key in keys}
+        lines.append(checked({"name": f"z{level}", "is": inner}))
+    (tmp_path / "runs.jsonl").write_bytes(b"".join(lines))
+    found = index.read(tmp_path)
+    assert found.damaged > levels // 2
+    assert len(found.named) + found.damaged == levels

@@ -92,8 +92,9 @@ def test_runs_that_cannot_be_judged_are_told(tmp_path, capsys, monkeypatch):
     without_processes(monkeypatch)
     assert main(["judge", str(tmp_path), STRICT]) == 0
     assert "1 runs not judged: its log was not kept; rotctl sweep" in capsys.readouterr().err
-    assert main(["judge", str(tmp_path), "criteria=standing"]) == 0
-    stdout, stderr = capsys.readouterr()
+    assert main(["judge", str(tmp_path), "criteria=standing"]) == 2
+    stderr = capsys.readouterr().err
+    assert "no run can be judged: " in stderr
     assert "criteria=standing does not judge behaviour=forward_roll_1" in stderr
 
 
@@ -127,3 +128,12 @@ def test_a_column_means_the_same_whoever_judges():
     for kind in metrics._KINDS:
         for column in kind.COLUMNS:
             assert found.setdefault(column.name, column) == column
+
+
+def test_criteria_that_fit_no_run_leave_the_table_as_it_was(tmp_path, capsys):
+    swept(tmp_path, *GRID)
+    (tmp_path / "judged.csv").write_text("before\n")
+    capsys.readouterr()
+    assert main(["judge", str(tmp_path), "criteria=landing"]) == 2
+    assert "no run can be judged: " in capsys.readouterr().err
+    assert (tmp_path / "judged.csv").read_text() == "before\n"

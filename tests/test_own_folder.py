@@ -78,6 +78,26 @@ def test_in_a_clone_a_copy_is_one_of_ours(here, cli, monkeypatch):
     assert listing.own_dir() is None
 
 
+def test_what_editors_leave_beside_a_file_is_no_choice(here, cli):
+    assert cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")[0] == 0
+    (here / "conf" / "behaviour" / ".#my_roll.yaml").symlink_to("me@host.1:5")
+    (here / "conf" / "behaviour" / "gone.yaml").symlink_to("nowhere")
+    code, shown, _ = cli("show", "behaviour=my_roll")
+    assert (code, ".#" in cli("list")[1]) == (0, False)
+    assert "name: my_roll" in shown
+
+
+@pytest.mark.parametrize("defaults", ["[_self_, bad]", "[{}, _self_]", "null"])
+def test_defaults_that_make_no_config_are_told(here, cli, defaults):
+    folder = here / "conf" / "behaviour"
+    folder.mkdir(parents=True)
+    (here / "conf" / listing.MARK).touch()
+    (folder / "bad.yaml").write_text(f"defaults: {defaults}\nname: bad\n")
+    code, _, said = cli("show", "behaviour=bad")
+    assert (code, said.count("\n")) == (2, 1)
+    assert said.startswith("rotctl: ")
+
+
 def test_a_name_of_ours_is_not_taken(here, cli):
     cli("new", "start", "my_start", "--from", "rest")
     own = here / "conf" / "start" / "tucked.yaml"

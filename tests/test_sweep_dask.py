@@ -127,7 +127,7 @@ def test_a_task_that_always_kills_is_a_failure(engine):
 def test_short_items_go_together_and_one_that_kills_takes_no_other_with_it(engine):
     """After the first ones, ten milliseconds are known to be short."""
     items = [*["a"] * 300, "kill", *["b"] * 100]
-    results = dict(engine.map(sweep_tasks.trouble, items, retries=3))
+    results = dict(engine.map(sweep_tasks.trouble, items, retries=6))
     assert results.pop(300) == Failure("the workers that tried it died")
     assert {index: items[index] for index in results} == {i: r[0] for i, r in results.items()}
     assert len(results) == 400

@@ -65,7 +65,7 @@ def adopt(path: Path, name: str, given: Mapping[str, str] | None = None) -> Adop
         given: roles that the user has named, see `rotctl.motion.naming.find_roles`.
 
     Raises:
-        InputError: it is none, or not symmetric.
+        InputError: it is none.
     """
     mj, notes = solid(path)
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
@@ -79,6 +79,9 @@ def adopt(path: Path, name: str, given: Mapping[str, str] | None = None) -> Adop
             f"{path}: legs and arms hang on one body, {roles['hips']}; no waist to bend"
         )
     bodies = {role: names.index(body) for role, body in roles.items() if body in names}
+    for role, body in bodies.items():
+        if mj.body_rootid[body] != mj.jnt_bodyid[0]:
+            raise InputError(f"{path}: {role} is {names[body]!r}, which hangs on no freejoint")
     data = mujoco.MjData(mj)
     straighten(mj, data, bodies)
     face_forward(data, bodies)

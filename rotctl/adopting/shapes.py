@@ -39,6 +39,8 @@ def pieces(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> list[tuple[Arr
 def stature(mj: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
     """Lowest and highest z of the shapes [m]."""
     all_of_it = [piece for b in range(1, mj.nbody) for piece in pieces(mj, data, b)]
+    if not all_of_it:  # meshes alone: as far as its bodies reach
+        return float(data.xpos[1:, 2].min()), float(data.xpos[1:, 2].max())
     low = min(min(start[2], end[2]) - radius for start, end, radius in all_of_it)
     return low, max(max(start[2], end[2]) + radius for start, end, radius in all_of_it)
 

@@ -172,6 +172,8 @@ class Rolling:
             raise InputError(
                 "behaviour.angular_momentum: excursion=root controls the root's angular velocity"
             )
+        if self._pace and measured.measure == "root":
+            raise InputError("behaviour.pace: excursion=root controls the root's angular velocity")
         kinds = ("linear", "angular_momentum" if by_momentum else "spin")
         self._tasks = np.concatenate(
             [task(kind(k).number, gains[n], axes) for k, n in zip(kinds, self.tasks, strict=True)]

@@ -155,6 +155,9 @@ def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     from rotctl.motion.writing import text
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
+    files.require_ending(out, ".yaml")
+    if out.exists() and out.samefile(arguments.file):
+        raise InputError(f"--out={out}: is the file that is read; give the clip another name")
     files.replace(out, text(clip).encode())
     return out
 

@@ -11,6 +11,7 @@ from rotctl.export.mjcf import mjcf
 from rotctl.export.movement import movement
 from rotctl.export.tables import csv, npz
 from rotctl.log import RunLog
+from rotctl.report import stored_model
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,17 @@ class Format:
     made: Callable[[RunLog], bytes]
 
 
+def _mjcf(log: RunLog) -> bytes:
+    stored_model.load(log)  # so that what is read of it is what MuJoCo takes
+    return mjcf(log.model_xml).encode()
+
+
 FORMATS = {
     "bvh": Format(".bvh", lambda log: bvh(movement(log))),
     "csv": Format(".csv", lambda log: csv(movement(log))),
     "npz": Format(".npz", lambda log: npz(movement(log))),
     "gltf": Format(".glb", lambda log: glb(movement(log))),
-    "mjcf": Format(".xml", lambda log: mjcf(log.model_xml).encode()),
+    "mjcf": Format(".xml", _mjcf),
 }
 
 

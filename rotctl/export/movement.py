@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.errors import LogError
 from rotctl.log import RunLog
 from rotctl.report import stored_model
 from rotctl.report.rows import drawable
@@ -78,6 +79,8 @@ def movement(log: RunLog) -> Movement:
         LogError: the log is damaged, its model is not safe to load, or no row is of use.
     """
     model = stored_model.load(log)
+    if model.jnt_type[0] != mujoco.mjtJoint.mjJNT_FREE:
+        raise LogError(f"{log.path}: the first joint of its model is no freejoint")
     states, velocities = log["trajectory/qpos"], log["trajectory/qvel"]
     time = drawable(log, np.hstack([states, velocities]))
     n = len(time)

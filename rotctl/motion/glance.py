@@ -16,7 +16,6 @@ _TO_Z = {
     "z": np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]),  # it is our x
 }
 _OURS = {"x": 1, "y": 2, "z": 0}
-AXES = tuple(_TO_Z)
 STANDING = 0.8  # [legs] head over ankles, as the median: so it stands most of the time
 ACROSS = 0.4  # [legs] and across it is no more
 STEADIER = 3.0  # the lowest point moves so much less along the axis that is up

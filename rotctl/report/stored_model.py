@@ -87,8 +87,9 @@ def load(log: RunLog) -> "mujoco.MjModel":
     except (ValueError, mujoco.FatalError) as error:
         reason = " ".join(str(error).split())
         raise LogError(f"{where} does not compile: {reason:.200}") from None
-    if model.nq != log.sizes["nq"]:
-        raise LogError(f"{where} has nq = {model.nq}, the trajectory {log.sizes['nq']}")
+    for size, there in (("nq", model.nq), ("nv", model.nv)):
+        if there != log.sizes[size]:
+            raise LogError(f"{where} has {size} = {there}, the trajectory {log.sizes[size]}")
     if model.nbuffer + model.narena > MAX_BYTES:
         raise LogError(f"{where} takes more than {MAX_BYTES} bytes of memory")
     if not (model.geom_bodyid > 0).any():

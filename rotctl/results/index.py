@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import files
-from rotctl.documents import from_json_line
+from rotctl.documents import DEEPEST, from_json_line
 from rotctl.errors import InputError, LogError
+from rotctl.listing import MOST_VALUES
 from rotctl.log import LOG_NAME
 from rotctl.log.outcome import plain_outcome, require_verdict
 from rotctl.same import kept
@@ -170,10 +171,30 @@ def _value(data: Any, named: Mapping[str, Any]) -> Any:
         return tuple(map(_text, data))
     if not isinstance(data, dict):
         raise ValueError("neither columns nor keys with values")
-    return {
+    whole = {
         key: named[value[REFERENCE]] if isinstance(value, dict) and REFERENCE in value else value
         for key, value in data.items()
     }
+    require_size(whole)  # of parts that name parts, which a stranger may have written
+    return whole
+
+
+def require_size(data: Any) -> None:
+    """See that plain data is no deeper and no larger than a config may be.
+
+    Raises:
+        ValueError: it is.
+    """
+    waiting, values = [(data, 0)], 0
+    while waiting:
+        value, depth = waiting.pop()
+        values += 1
+        if values > MOST_VALUES or depth > DEEPEST:
+            raise ValueError("parts that name parts without end")
+        if isinstance(value, Mapping):
+            waiting += [(inner, depth + 1) for inner in value.values()]
+        elif isinstance(value, list | tuple):
+            waiting += [(inner, depth + 1) for inner in value]
 
 
 def _origin(named: dict[str, Any], name: Any) -> Mapping[str, Any]:

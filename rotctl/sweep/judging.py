@@ -145,6 +145,8 @@ def judge(
             else:
                 found[run.run_id] = replace(run, outcome=result, config=questions[index].config)
             progress()
+    if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
+        raise InputError(f"{folder}: no run can be judged: {found[asked[0][0].run_id].reason}")
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
     notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]
