@@ -22,8 +22,10 @@ def mirrored(model: Model, motion: Motion) -> Motion:
 def symmetric(model: Model, motion: Motion) -> Motion:
     """The mean of a motion and its mirror image."""
     poses = 0.5 * (motion.poses + _mirrored_poses(model, motion.poses))
-    quaternions = motion.pelvis.as_quat(scalar_first=True) * [1.0, 0.0, 1.0, 0.0]
-    return Motion(poses, Rotation.from_quat(quaternions, scalar_first=True))
+    quaternions = motion.pelvis.as_quat(scalar_first=True)
+    image = quaternions * _IN_MIRROR
+    image[(quaternions * image).sum(axis=1) < 0.0] *= -1.0  # q and -q are one turn: of the two
+    return Motion(poses, Rotation.from_quat(quaternions + image, scalar_first=True))  # the nearer
 
 
 def _mirrored_poses(model: Model, poses: Array) -> Array:
