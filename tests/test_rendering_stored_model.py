@@ -117,7 +117,7 @@ class Stored:
 
     def __init__(self, text, nq):
         self.model_xml = text
-        self.sizes = {"nq": nq}
+        self.sizes = {"nq": nq, "nv": nq // 7 * 6}  # of free bodies
 
 
 @pytest.mark.parametrize(
@@ -173,6 +173,13 @@ def test_the_largest_that_is_let_through_takes_less_than_a_gigabyte(tmp_path):
     finished = subprocess.run(command, capture_output=True, text=True, cwd=Path(__file__).parent)
     assert finished.stderr == ""
     assert int(finished.stdout) < 2**30
+
+
+def test_velocities_must_fit_too():
+    stored = Stored(mjcf(), 7)
+    stored.sizes["nv"] = 7
+    with pytest.raises(LogError, match=r"has nv = 6, the trajectory 7$"):
+        stored_model.load(stored)
 
 
 def test_a_sound_model_is_compiled():
