@@ -189,7 +189,7 @@ class Flight:
         return self._lowest(data, landing) <= self._lowest(data, own) + ROUNDING
 
     def least_momentum(self, turns: float, gone: float, time: float) -> float:
-        """About left, that makes a turn in the tightest shape [kg m2/s].
+        """About its axis, that makes a turn in the tightest shape [kg m2/s].
 
         Args:
             turns: from upright to the landing, in the sense of the flight; gone: of that at

@@ -28,7 +28,7 @@ def check(
 
     Args:
         axes: (3, 3) rows are forward, left and up.
-        target: to turn about left [rad].
+        target: to turn [rad].
         aims: of the stage's tasks; laws: of the behaviour's poses, by the name of the stage.
 
     Raises:

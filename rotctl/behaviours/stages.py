@@ -100,7 +100,8 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         rise = replace(rise, start=start, end=end, parts=exchanged(rise.parts))
     if flight:
         tuck, stretch = (mirrored_angles(model, a) for a in (flight.tuck, flight.stretch))
-        flight = replace(flight, tuck=tuck, stretch=stretch)
+        shapes = {name: mirrored_angles(model, a) for name, a in flight.shapes.items()}
+        flight = replace(flight, tuck=tuck, stretch=stretch, shapes=shapes)
         if flight.entry:
             pose = mirrored_angles(model, flight.entry.pose)
             flight = replace(flight, entry=replace(flight.entry, pose=pose))

@@ -65,14 +65,7 @@ def skeleton(path: Path) -> mujoco.MjModel:
     """
     root = read_mjcf(path)
     _keep_bones(root)
-    try:
-        with quiet():
-            model = mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding="unicode"))
-    except (ValueError, mujoco.FatalError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{path}: does not compile: {reason:.200}") from None
-    require_hinges(path, model)
-    return model
+    return _compiled(path, root)
 
 
 def solid(path: Path) -> tuple[mujoco.MjModel, list[str]]:
@@ -86,6 +79,16 @@ def solid(path: Path) -> tuple[mujoco.MjModel, list[str]]:
     """
     root = read_mjcf(path)
     meshes = _keep_shapes(root)
+    notes = [f"{meshes} shapes that are meshes are left out"] if meshes else []
+    return _compiled(path, root), notes
+
+
+def _compiled(path: Path, root: ElementTree.Element) -> mujoco.MjModel:
+    """The model of what is left of a file.
+
+    Raises:
+        InputError: it does not compile, or is no tree of hinges on a free root.
+    """
     try:
         with quiet():
             model = mujoco.MjModel.from_xml_string(ElementTree.tostring(root, encoding="unicode"))
@@ -93,8 +96,7 @@ def solid(path: Path) -> tuple[mujoco.MjModel, list[str]]:
         reason = " ".join(str(error).split())
         raise InputError(f"{path}: does not compile: {reason:.200}") from None
     require_hinges(path, model)
-    notes = [f"{meshes} shapes that are meshes are left out"] if meshes else []
-    return model, notes
+    return model
 
 
 def require_hinges(path: Path, model: mujoco.MjModel) -> None:

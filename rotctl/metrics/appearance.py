@@ -167,13 +167,12 @@ def _load_of_hands(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Array
 
 
 def _height_of_head(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Array:
-    """Lowest point (n,) of head and neck above the ground [m].
+    """Lowest point (n,) of the head above the ground [m].
 
     The ground under a head is what the log has below the centre of mass where that passed there.
     """
     head = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, HEAD)
-    neck = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "neck")  # only seen, if at all
-    shape = skeleton.capsules(_geoms(mj, [head]) + [neck] * (neck >= 0))
+    shape = skeleton.capsules(_geoms(mj, [head]))
     lowest = (shape.ends[..., 2].min(axis=1) - shape.radius[:, None]).min(axis=0)
     ground = floats(log, "trajectory/ground_height")
     if (ground == ground[0]).all():
