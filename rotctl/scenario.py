@@ -18,7 +18,7 @@ from rotctl.control.similar import similar
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
-from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance, Push
+from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Calm, Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
@@ -75,7 +75,8 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     """
     control = similar(config.controller, gains_likeness(config.character), _kinds_of(config))
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
-    model = _varied(config, Variation(config.plant, plant)) if config.plant.differs else known
+    apart = config.plant.differs or config.disturbance.changes_model
+    model = _varied(config, Variation(config.plant, plant)) if apart else known
     require_fit(config, known)
     behaviour = config.behaviour.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
@@ -118,7 +119,7 @@ def require_fit(config: Config, model: Model) -> None:
     """See that the parts of a config fit together.
 
     Raises:
-        InputError: criteria judge other motions or bodies, or a push comes too late.
+        InputError: criteria judge other motions or bodies, or what disturbs comes too late.
     """
     behaviour, judged = config.behaviour, config.criteria.kind
     wanted = ["standing", "landing", "flip", "dive", "orientation"]
@@ -140,11 +141,18 @@ def require_fit(config: Config, model: Model) -> None:
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
             f"physics={config.physics.name} give plant.predicted=false"
         )
-    push = config.disturbance
-    if isinstance(push, Push) and ends(push.time)[0] >= config.duration:
+    outside = config.disturbance
+    if isinstance(outside, Calm):
+        return
+    if ends(outside.time)[0] >= config.duration:
         raise InputError(
-            f"disturbance.time: the push begins at {ends(push.time)[0]:g} s at the earliest, "
-            f"when the run of {config.duration:g} s is over"
+            f"disturbance.time: the {outside.kind} begins at {ends(outside.time)[0]:g} s at the "
+            f"earliest, when the run of {config.duration:g} s is over"
+        )
+    if outside.changes_model and config.controller.sees_disturbance:
+        raise InputError(
+            f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
+            "none: control goes on with the model that it knows"
         )
 
 

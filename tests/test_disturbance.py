@@ -163,6 +163,19 @@ def test_a_sphere_s_drag_is_its_cross_section():
     assert force == pytest.approx([0.0, 0.5 * 1.2 * 0.47 * pi * 0.09 * 100.0, 0.0], rel=1e-12)
 
 
+def test_a_gust_blows_between_its_ends(world):
+    """Whatever parts of control steps they lie in, and as hard as the wind meanwhile."""
+    data, mj = world.data(world.in_the_air(1)[0], np.zeros(world.mj.nv)), world.mj
+    wind, period = np.array([3.0, 4.0, 0.0]), 1 / 60
+    steady = Air(mj, wind, 0.6).apply(data, period)
+    gust, total = Air(mj, wind, 0.6, begin=0.123, end=0.456), np.zeros(6)
+    for i in range(60):
+        data.time = i * period
+        total += gust.apply(data, period) * period
+    assert total == pytest.approx(steady * (0.456 - 0.123), rel=1e-9)
+    assert not data.xfrc_applied.any()
+
+
 def test_a_body_that_is_not_there():
     with pytest.raises(InputError) as caught:
         made("disturbance=push", "disturbance.body=tail")
@@ -265,3 +278,84 @@ def test_what_is_seen_is_predicted_and_what_is_not_is_missing(overrides, backend
         assert max(off) < 1e-7
     else:
         assert max(off) > 0.1 * max(lost) > 1e-3
+
+
+# ---------------------------------------------------------------- what changes of the world
+
+CHANGES = {
+    "load": ["disturbance=load", "disturbance.mass=6"],
+    "slip": ["disturbance=slippery", "disturbance.friction=0.4"],
+}
+
+
+def changing(kind, *overrides):
+    return made(*CHANGES[kind], "disturbance.time=0.19", *overrides)
+
+
+@pytest.mark.parametrize("physics", PHYSICS)
+@pytest.mark.parametrize("kind", CHANGES)
+def test_no_velocity_jumps_as_the_world_changes(physics, kind):
+    """The run goes on from the state that it would have had, and in another way."""
+    calm = list(islice(Episode(made(f"physics={physics}")), 20))
+    changed = list(islice(Episode(changing(kind, f"physics={physics}")), 20))
+    for before, after in zip(calm[:13], changed[:13], strict=True):
+        assert before.truth.velocity == pytest.approx(after.truth.velocity, abs=1e-12)
+        assert before.decision.torque == pytest.approx(after.decision.torque, rel=1e-6, abs=1e-6)
+        assert not after.wrench.any()
+    assert [bool(moment.remark) for moment in changed] == [i == 12 for i in range(20)]
+    assert np.abs(calm[-1].truth.velocity - changed[-1].truth.velocity).max() > 1e-3
+
+
+@pytest.mark.parametrize("backend", ["compiled", "reference"])
+def test_a_load_has_its_body_s_momentum_and_its_own_weight(backend):
+    """As it is taken up, and in flight, where the whole falls as everything does."""
+    scenario = changing("load", f"controller.backend={backend}")
+    mj, chest = scenario.model.mj, scenario.model.mj.body("chest").id
+    before = float(mj.body_subtreemass[1])
+    moments = list(islice(Episode(made()), 13))
+    changed = list(islice(Episode(scenario), 13))
+    velocity = np.zeros(6)
+    data = mujoco.MjData(mj)
+    data.qpos[:], data.qvel[:] = changed[-1].truth.position, changed[-1].truth.velocity
+    mujoco.mj_forward(mj, data)
+    mujoco.mj_objectVelocity(mj, data, mujoco.mjtObj.mjOBJ_BODY, chest, velocity, 0)
+    added = changed[-1].truth.momentum.linear - moments[-1].truth.momentum.linear
+    assert added == pytest.approx(6.0 * velocity[3:], rel=1e-6)
+    assert mj.body_subtreemass[1] == pytest.approx(before + 6.0)
+    told = changed[-1].truth.momentum
+    assert told.com_velocity == pytest.approx(told.linear / (before + 6.0), rel=1e-12)
+    assert scenario.known.mj.body_subtreemass[1] == before  # what control goes on to believe
+    assert made().model.mj.body_subtreemass[1] == before  # as does the next run
+
+
+def test_newton_s_second_law_holds_with_a_load():
+    """Ground and the gravity of what it weighs then are the change of momentum."""
+    scenario = changing("load", "physics.substeps=32", "duration=1")
+    buffer, breakdown = in_memory(scenario)
+    assert not breakdown
+    gained = np.diff(buffer.trajectory.linear_momentum, axis=0)[12:] * 60.0
+    weighs = float(scenario.model.mj.body_subtreemass[1])
+    rest = gained - buffer.contacts.ground_force[12:-1]
+    assert rest.mean(axis=0) == pytest.approx(weighs * scenario.model.gravity, abs=10.0)
+    assert weighs - scenario.model.mass == pytest.approx(6.0)
+
+
+def test_slippery_ground_gives_a_share_of_its_friction():
+    scenario = changing("slip")
+    states = [moment.truth for moment in islice(Episode(scenario), 20)]
+    given = [state.contacts.friction.max(initial=0.0) for state in states]
+    assert given[:12] == pytest.approx([given[0]] * 12)
+    assert given[12:] == pytest.approx([0.4 * given[0]] * 8)
+    character = scenario.model.mj.body_rootid[scenario.model.mj.geom_bodyid] == 1
+    ours, known = scenario.model.mj.geom_friction, scenario.known.mj.geom_friction
+    assert np.array_equal(ours[character], known[character])
+
+
+def test_a_change_waits_for_its_phase():
+    scenario = made(*CHANGES["load"], "disturbance.time=1", "disturbance.phase=90")
+    moments = list(islice(Episode(scenario), 200))
+    came = [i for i, moment in enumerate(moments) if moment.remark]
+    assert len(came) == 1
+    before, after = (moments[i].signals.phase for i in (came[0] - 2, came[0] - 1))
+    assert (before - pi / 2) // (2 * pi) != (after - pi / 2) // (2 * pi)
+    assert moments[came[0]].truth.time >= 1.0

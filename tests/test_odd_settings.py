@@ -63,6 +63,18 @@ def complaint(chosen, changes):
          "disturbance.time: must not begin before the run does, at 0 s"),
         (PUSHED, {"disturbance.time": [1.0, 2.0]}, "disturbance.time: the push begins at 1 s at "
          "the earliest, when the run of 1 s is over"),
+        ([*STAND, "disturbance=load"], {"disturbance.mass": -60.0, "disturbance.time": 0.0},
+         "disturbance.mass=-60: chest has 15.1 kg"),
+        ([*STAND, "disturbance=slippery"], {"disturbance.friction": [0.0, 1.0]},
+         "disturbance: friction must be a factor above 0 and at most 100"),
+        ([*STAND, "disturbance=load"], {"disturbance.mass": 1e9},
+         "disturbance: mass must be at most 1000 kg"),
+        ([*STAND, "disturbance=load"],
+         {"controller.sees_disturbance": True, "disturbance.time": 0.0},
+         "controller.sees_disturbance is about forces, and disturbance=load has none: control "
+         "goes on with the model that it knows"),
+        ([*STAND, "disturbance=load"], {"disturbance.time": 2.0}, "disturbance.time: the load "
+         "begins at 2 s at the earliest, when the run of 1 s is over"),
         ([*PUSHED, "terrain=obstacles"], {"disturbance.body": "box_0"},
          f"disturbance.body names the unknown body 'box_0'; bodies: {BODIES}"),
         (STAND, {"behaviour.tasks.\x1b[31m": {"kind": "limits"}},

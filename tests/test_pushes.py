@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from rotctl.config import load
-from rotctl.mechanics.disturbance import OnePush, PushAtPhase
+from rotctl.mechanics.onset import Onset
 from rotctl.metrics.judge import judge
 from rotctl.report.site import pushes
 from rotctl.report.site.charts import charts
@@ -55,12 +55,10 @@ def test_a_push_begins_as_the_phase_is_passed(degrees, behaviour):
     )
 
 
-def test_a_phase_that_is_never_passed_is_never_pushed():
-    push = PushAtPhase(OnePush(1, np.ones(3), 0.0, 0.1), 1.0)
-    for phase in (nan, 0.5, 0.9, 0.7, 0.99):
-        assert not push._passed(phase)
-        push._last = phase
-    assert push._passed(1.01)
+def test_a_phase_that_is_never_passed_never_comes():
+    onset = Onset(0.0, 1.0)
+    assert not any(onset.come(0.1, phase) for phase in (nan, 0.5, 0.9, 0.7, 0.99))
+    assert onset.come(0.2, 1.01)
 
 
 def test_a_number_stands_for_itself():

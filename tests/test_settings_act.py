@@ -65,6 +65,15 @@ CASES = {
         r"disturbance\.phase",
     ),
     "wind": Case(("disturbance=wind",), r"disturbance\..*"),
+    "gust": Case(
+        ("disturbance=gust", "disturbance.time=[0.05,0.2]", "disturbance.duration=0.1"),
+        r"disturbance\..*",
+    ),
+    "load": Case(("disturbance=load", "disturbance.time=[0.05,0.2]"), r"disturbance\..*"),
+    "slippery": Case(("disturbance=slippery", "disturbance.time=[0.05,0.2]"), r"disturbance\..*"),
+    "load at a phase": Case(
+        ("disturbance=load", "disturbance.time=0", "disturbance.phase=10"), r"disturbance\.phase"
+    ),
     "plant": Case(("plant=randomised",), r"plant\..*"),
     "modified": Case(
         ("controller.supervisor=modified",), r"controller\.thresholds\.separation", seconds=0.8

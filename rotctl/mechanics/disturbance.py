@@ -1,20 +1,22 @@
-"""Forces on the character from outside: pushes and wind, drawn from the run's seed.
+"""What disturbs a run, drawn from its seed: pushes, wind, and what `rotctl.mechanics.changes` has.
 
-They act on bodies through MuJoCo's `xfrc_applied` and are told in the log. Control knows of them
+Forces act on bodies through MuJoCo's `xfrc_applied` and are told in the log. Control knows of them
 only where `controller.sees_disturbance` says so.
 """
 
 from dataclasses import dataclass
-from math import cos, nan, pi, radians, sin, sqrt, tau
-from typing import Annotated, Literal, Protocol
+from math import cos, inf, nan, pi, radians, sin, sqrt
+from typing import Annotated, ClassVar, Literal, Protocol
 
 import mujoco
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
+from rotctl.mechanics.changes import Load, Slip
 from rotctl.mechanics.model import ROOT_BODY, Model, body_id, is_character
+from rotctl.mechanics.onset import Onset, Time
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends
 
@@ -24,14 +26,13 @@ DISTURBANCE_STREAM = 2  # beside the start's, which is drawn from the seed alone
 SHORTEST = 1e-3  # [s] of a push: time counts to 1e-15 of itself
 
 
-def _from_the_start(time: float | tuple[float, float]) -> float | tuple[float, float]:
-    if ends(time)[0] < 0.0:
-        raise ValueError("must not begin before the run does, at 0 s")
-    return time
-
-
 class Disturbance(Protocol):
     """What disturbs one run."""
+
+    @property
+    def remark(self) -> str:
+        """What the log should tell of the control step that began last; mostly empty."""
+        ...
 
     def apply(self, data: mujoco.MjData, period: float, phase: float) -> Array:
         """Set the forces of the control step that begins, which stay for its `period` [s].
@@ -52,6 +53,7 @@ class Calm:
     name: str
     kind: Literal["none"]
     description: str = ""
+    changes_model: ClassVar[bool] = False
 
     def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "Nothing":
         """For one run."""
@@ -77,9 +79,10 @@ class Push:
     impulse: NonNegative
     duration: Annotated[Positive, Field(ge=SHORTEST)]
     direction: Drawn
-    time: Annotated[Drawn, AfterValidator(_from_the_start)]
+    time: Time
     phase: Drawn | None = None
     description: str = ""
+    changes_model: ClassVar[bool] = False
 
     def make(
         self, model: Model, axes: Array, generator: np.random.Generator
@@ -101,7 +104,7 @@ class Push:
 
 @validated(frozen=True, config=STRICT)
 class Wind:
-    """Steady wind, and the air's drag on all that moves in it.
+    """Wind, and the air's drag on all that moves in it.
 
     Attributes:
         speed: [m/s]; 0 is still air.
@@ -109,6 +112,8 @@ class Wind:
             a number.
         density: of the air [kg/m3].
         drag: coefficient of a capsule [-].
+        time: when it begins to blow [s]; before and after it there is no air.
+        duration: for so long [s]; null to the end.
     """
 
     name: str
@@ -117,20 +122,28 @@ class Wind:
     direction: Drawn
     density: Positive
     drag: Positive
+    time: Time = 0.0
+    duration: Annotated[Positive, Field(ge=SHORTEST)] | None = None
     description: str = ""
+    changes_model: ClassVar[bool] = False
 
     def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "Air":
         """For one run whose forward, left and up are the rows of `axes`."""
         angle = radians(generator.uniform(*ends(self.direction)))
         velocity = self.speed * product(np.array([cos(angle), sin(angle), 0.0]), axes)
-        return Air(model.mj, velocity, 0.5 * self.density * self.drag)
+        begin = float(generator.uniform(*ends(self.time)))
+        end = inf if self.duration is None else begin + self.duration
+        return Air(model.mj, velocity, 0.5 * self.density * self.drag, begin, end)
 
 
-DisturbanceSettings = Annotated[Calm | Push | Wind, Field(discriminator="kind")]
+DisturbanceSettings = Annotated[Calm | Push | Wind | Load | Slip, Field(discriminator="kind")]
+"""What can disturb. Where one `changes_model`, the run has a model of its own."""
 
 
 class Nothing:
     """Leaves everything as it is."""
+
+    remark = ""
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`."""
@@ -145,6 +158,7 @@ class OnePush:
     force: Array
     begin: float
     end: float
+    remark: ClassVar[str] = ""
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`; a step that holds a part of the push gets that part of it."""
@@ -158,37 +172,44 @@ class OnePush:
 class PushAtPhase:
     """A push that waits until the behaviour comes through a phase."""
 
+    remark = ""
+
     def __init__(self, push: OnePush, phase: float) -> None:
         """Begin `push` where it would have begun, or later, at that phase [rad]."""
-        self._push, self._phase = push, phase
-        self._last, self._begun = nan, False
+        self._push, self._onset, self._begun = push, Onset(push.begin, phase), False
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`."""
         push = self._push
-        if not self._begun and data.time >= push.begin and self._passed(phase):
+        if not self._begun and self._onset.come(data.time, phase):
             lasting = push.end - push.begin
             self._push = OnePush(push.body, push.force, data.time, data.time + lasting)
             self._begun = True
-        self._last = phase
         return self._push.apply(data, period) if self._begun else np.zeros(6)
-
-    def _passed(self, phase: float) -> bool:
-        """Whether the last control step went over the phase that is waited for, either way."""
-        step, ahead = phase - self._last, self._phase - self._last
-        return ahead % tau <= step if step > 0.0 else -ahead % tau <= -step
 
 
 class Air:
     """Drag of moving air on every solid capsule and sphere, by the area it shows."""
 
-    def __init__(self, mj: mujoco.MjModel, velocity: Array, factor: float) -> None:
+    remark = ""
+
+    def __init__(
+        self,
+        mj: mujoco.MjModel,
+        velocity: Array,
+        factor: float,
+        begin: float = 0.0,
+        end: float = inf,
+    ) -> None:
         """Air of that velocity (3,) [m/s].
 
         Args:
             factor: half the density times the drag coefficient [kg/m3].
+            begin, end: between which there is air [s]; a control step that holds a part of that
+                time gets that part of the force.
         """
         self._mj, self._wind, self._factor = mj, velocity, factor
+        self._begin, self._end = begin, end
         solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
         self._geoms = np.flatnonzero(solid).tolist()
         self._capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
@@ -198,6 +219,10 @@ class Air:
         mj = self._mj
         data.xfrc_applied[:] = 0.0
         motion, total = np.empty(6), np.zeros(6)
+        overlap = min(data.time + period, self._end) - max(data.time, self._begin)
+        share = min(max(overlap / period, 0.0), 1.0)
+        if share == 0.0:
+            return total
         for geom in self._geoms:
             mujoco.mj_objectVelocity(mj, data, mujoco.mjtObj.mjOBJ_GEOM, geom, motion, 0)
             flow = self._wind - motion[3:]
@@ -209,7 +234,7 @@ class Air:
             radius, half = mj.geom_size[geom, :2] * (1.0, self._capsule[geom])
             area = pi * radius**2 + 4.0 * radius * half * sqrt(dot(across, across))
             body = mj.geom_bodyid[geom]
-            force = self._factor * area * speed * flow
+            force = share * self._factor * area * speed * flow
             data.xfrc_applied[body, :3] += force
             data.xfrc_applied[body, 3:] += cross(data.geom_xpos[geom] - data.xipos[body], force)
             total[:3] += force

@@ -57,7 +57,7 @@ int rotctl_read(Self* s, mjData* d, Reading* r) {
   cross(about, r->offset, r->linear);
   for (int i = 0; i < 3; i++) {
     r->angular[i] -= about[i];
-    r->com_velocity[i] = r->linear[i] / s->c.mass;
+    r->com_velocity[i] = r->linear[i] / m->body_subtreemass[1];  // what it weighs now
   }
   const double* I = d->crb + 10;
   double xx = I[0], yy = I[1], zz = I[2], xy = I[3], xz = I[4], yz = I[5];

@@ -89,7 +89,7 @@ class Moment(NamedTuple):
         wrench: (6,) from outside, about the centre of mass [N, N m].
         forces: what the ground did.
         ground_height: below the centre of mass [m].
-        remark: of the physics; mostly empty.
+        remark: of the physics, or of what disturbs; mostly empty.
     """
 
     truth: State
@@ -160,7 +160,8 @@ class Episode:
             forces = parts.stepper.advance(data, torque, state.contacts)
             x, y, _ = truth.momentum.com.tolist()
             height = model.ground.height(x, y)
-            remark = "; ".join(filter(None, (parts.senses.remark, parts.stepper.remark())))
+            remarks = (parts.disturbance.remark, parts.senses.remark, parts.stepper.remark())
+            remark = "; ".join(filter(None, remarks))
             mark("physics")
             yield Moment(
                 truth=truth,
