@@ -22,7 +22,6 @@ from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
 from rotctl.scenario import Making, Scenario, acting, build
-from rotctl.simulation.episode import Moment
 from rotctl.simulation.loop import Look, nobody, simulate
 from rotctl.summary import Summary, broke_down, judged_again
 
@@ -170,10 +169,9 @@ def _simulated(
 def in_memory(
     scenario: Scenario,
     progress: Callable[[], object] = lambda: None,
-    stop: Callable[[Moment], bool] = lambda moment: False,
     look: Look = nobody,
 ) -> tuple[TrajectoryBuffer, str]:
-    """Simulate, and write nothing; `progress`, `stop` and `look` are those of `simulate`.
+    """Simulate, and write nothing; `progress` and `look` are those of `simulate`.
 
     Returns:
         The rows, and what ended them early: a breakdown, or the end of the ground; else empty.
@@ -185,7 +183,6 @@ def in_memory(
             scenario.config.duration,
             scenario.config.physics.contact_capacity,
             progress,
-            stop,
             look,
         )
     # MuJoCo counts most warnings, and the loop stops at those; not all are counted.

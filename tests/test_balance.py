@@ -181,10 +181,14 @@ def stood(behaviour, direction, impulse, seed):
     aimed = [f"disturbance.impulse={impulse}", f"disturbance.direction=[{direction},{direction}]"]
     overrides = [*push, *aimed] if push else []
     scenario = build(load([f"behaviour={behaviour}", f"seed={seed}", "duration=5", *overrides]))
-    swings, number = [], feet(scenario)
-    buffer, breakdown = in_memory(
-        scenario, stop=lambda moment: swings.append(moment.command.held_out[number]) or False
-    )
+    swings, number, usual = [], feet(scenario), scenario.controller.decide
+
+    def noted(state, command, blend):
+        swings.append(command.held_out[number])
+        return usual(state, command, blend)
+
+    scenario.controller.decide = noted
+    buffer, breakdown = in_memory(scenario)
     steps = sum((now & ~before).any() for before, now in pairwise([swings[0] & False, *swings]))
     return summarise(scenario, buffer, breakdown, 1.0), steps
 

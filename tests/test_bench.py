@@ -1,9 +1,14 @@
 """The benchmark runs and says what it should; what it measures is nobody's assertion."""
 
+import mujoco
 import pytest
 
-from rotctl.bench import scaling, solvers, split, startup
+from rotctl.bench import scaling, solvers, split, startup, whole
 from rotctl.cli import main
+from rotctl.config import load
+from rotctl.run import in_memory
+from rotctl.scenario import build
+from rotctl.simulation.episode import Episode
 
 
 def test_the_split_adds_up(monkeypatch):
@@ -11,6 +16,29 @@ def test_the_split_adds_up(monkeypatch):
     table = split.split(1)
     for word in (*split.STAGES, "control / physics", "real-time factor", "compiled", "reference"):
         assert word in table
+
+
+def test_the_physics_alone_are_those_of_the_run(monkeypatch):
+    """Else they were no limit: a roll's torques lead to its last state again."""
+    ends, usual = [], whole.rollout.rollout
+    monkeypatch.setattr(
+        whole.rollout, "rollout", lambda *asked: ends.append(usual(*asked)[0][0, -1])
+    )
+    scenario = build(load(["duration=0.5"]))
+    buffer, _ = in_memory(scenario)
+    whole._physics(scenario.model, buffer, 4)
+    data = mujoco.MjData(scenario.model.mj)
+    mujoco.mj_setState(scenario.model.mj, data, ends[0], whole.FULL)
+    episode = Episode(build(load(["duration=0.5"])))
+    for _ in range(30):
+        episode.step()
+    assert data.qpos.tobytes() == episode.data.qpos.tobytes()
+
+
+def test_the_whole_loop_beside_the_physics(monkeypatch):
+    runs = {"a roll": ("duration=0.2",)}
+    monkeypatch.setattr(whole, "RUNS", runs)
+    assert whole.table(1).splitlines()[-1].startswith("a roll")
 
 
 def test_solvers_agree_with_the_reference_solver():

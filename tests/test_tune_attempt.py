@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 from math import cos, nan, pi, radians, sin
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from rotctl.config import load
+from rotctl.log import TrajectoryBuffer
 from rotctl.tune.attempt import Attempt, attempt, hopeless
 from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
 from rotctl.tune.space import Objective, Stopping, Wish
@@ -81,13 +81,13 @@ def test_the_mean_or_the_worst_run_counts():
 
 def cut_at(progress, commanded=1.3, tilt=lambda t: 0.0):
     """The time [s] at which a run of this progress(t) [rev] and tilt(t) [deg] is cut, or None."""
-    stop = hopeless(STOPPING, commanded)
+    stop, buffer = hopeless(STOPPING, commanded), TrajectoryBuffer.allocate(600, 7, 6, 0, 0, 0, 2)
     for i in range(600):
         t, angle = i / 60, radians(tilt(i / 60))
-        axis = np.array([0.0, cos(angle), sin(angle)])
-        turned = np.array([0.0, 2 * pi * progress(t), 0.0])
-        signals = SimpleNamespace(angle=turned, axis=axis, axes=np.eye(3))
-        if stop(SimpleNamespace(state=SimpleNamespace(time=t), signals=signals)):
+        buffer.trajectory.time[i], buffer.command.axes[i] = t, np.eye(3)
+        buffer.trajectory.trunk_axis[i] = 0.0, cos(angle), sin(angle)
+        buffer.trajectory.angular_excursion[i] = 0.0, 2 * pi * progress(t), 0.0
+        if stop(buffer, i + 1):
             return t
     return None
 

@@ -94,19 +94,24 @@ class Wanted(NamedTuple):
 
 
 class Pace:
-    """The pace of one run."""
+    """The pace of one run.
+
+    Attributes:
+        times: at which what is commanded changes [s].
+        rates: as an angular velocity, before the first of them and from each on [rev/s].
+    """
 
     def __init__(self, settings: PaceSettings, rate: float, speed: float) -> None:
         """For a commanded angular velocity [rev/s] and speed [m/s]."""
-        self._settings = s = settings
+        self.settings = s = settings
         per = 1.0 if s.keep == "rate" else s.travel
-        self._times = [time for time, _ in s.schedule]
+        self.times = [time for time, _ in s.schedule]
         first = rate if s.keep == "rate" else speed
-        self._rates = [each / per for each in (first, *(value for _, value in s.schedule))]
+        self.rates = [each / per for each in (first, *(value for _, value in s.schedule))]
 
     def commanded(self, time: float) -> float:
         """What is commanded at a time [s], as an angular velocity [rev/s]."""
-        return self._rates[bisect_right(self._times, time)]
+        return self.rates[bisect_right(self.times, time)]
 
     def tick(self, clock: Clock, come: float, time: float, period: float) -> Clock:
         """The clock now, a period after it was `clock`.
@@ -122,7 +127,7 @@ class Pace:
 
     def before(self, phase: float) -> float:
         """How far a phase [rad] is before the one in which it waits, at most half [rev]."""
-        return (self._settings.wait - phase / tau + 0.5) % 1.0 - 0.5
+        return (self.settings.wait - phase / tau + 0.5) % 1.0 - 0.5
 
     def at(self, phase: float, ahead: float, late: float, time: float) -> Wanted:
         """What to ask for.
@@ -133,7 +138,7 @@ class Pace:
             late: see `Clock` [rev].
             time: [s].
         """
-        s = self._settings
+        s = self.settings
         turn = phase / tau
         before = self.before(phase)
         here = 0.5 + 0.5 * cos(pi * before / s.width) if abs(before) < s.width else 0.0

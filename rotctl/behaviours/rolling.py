@@ -21,6 +21,7 @@ from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.behaviours.compiled_roll import CompiledRoll
 from rotctl.behaviours.facing import UP, frame_of
 from rotctl.behaviours.finishing import Finishing, FinishSettings
 from rotctl.behaviours.pacing import SLIP, Clock, Pace, PaceSettings
@@ -276,6 +277,23 @@ class Rolling:
         """
         now = memory.excursion
         return Signals(angle=now.angle, phase=now.phase, axis=memory.axis, axes=self.axes)
+
+    def compiled(self) -> CompiledRoll | None:
+        """The same for C, which works on the same tasks; None under `root`, which it has not."""
+        if self._measured.measure == "root":
+            return None
+        made = CompiledRoll(
+            self._frame,
+            self._measured,
+            self._period,
+            self._slope,
+            (self._velocity, self._angular_velocity),
+            self._poses,
+            self._tasks,
+        )
+        if self._pace:
+            made.add_pace(self._pace, self._way, self._over, self._usual)
+        return made
 
     def _axis(self, state: State) -> Array:
         """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""

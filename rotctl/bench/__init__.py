@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from rotctl import files
-from rotctl.bench import overhead, scaling, solvers, split, startup
+from rotctl.bench import overhead, scaling, solvers, split, startup, whole
 
 STATES = 150  # for the comparison of solvers; literal OSQP takes tens of milliseconds on each
 
@@ -18,6 +18,7 @@ def bench(repeats: int, picture: Path | None) -> Iterator[str]:
     """
     if picture is not None:
         files.require_ending(picture, ".svg", ".png", ".pdf")
+    yield whole.table(repeats)
     yield split.split(repeats)
     yield startup.processes(repeats)
     yield solvers.compare(STATES)

@@ -1,4 +1,4 @@
-"""Where the time of a control step goes, on the states of a real forward roll.
+"""Where the time of a control step goes that Python makes, on a real forward roll.
 
 Times on a shared machine wander; ratios taken in one run, medians over repeats, do not.
 """
@@ -88,7 +88,7 @@ def split(repeats: int) -> str:
         return f"{label:{width}}" + "".join(cell.rjust(11) for cell in cells)
 
     lines = [
-        f"forward_roll_1, {SECONDS:g} s simulated, median of {repeats} rolls",
+        f"forward_roll_1, {SECONDS:g} s step by step in Python, median of {repeats} rolls",
         "",
         f"{'':{width}}" + "".join(backend.rjust(11) for backend, _ in columns),
         f"{'microseconds a control step, with substeps':{width}}"

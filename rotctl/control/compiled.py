@@ -159,24 +159,9 @@ class CompiledStep:
         tasks than it has room for, and for any state but the one that `read` read last, as part
         of it is kept on the C side.
         """
-        k = len(command.tasks)
-        supervisor = SUPERVISORS.get(command.supervisor)
-        if state is not self._last or k > TASKS or supervisor is None:
+        if state is not self._last or not self.ask(command, blend):
             return None
-        given, answer = self._command, self._answer
-        gains = (command.pose, command.contact, command.thresholds)
-        if gains is not self._gains and gains != self._gains:
-            self._take(*gains)
-            self._gains = gains
-        self._forward[:] = command.forward
-        given.blend = blend
-        given.supervisor = supervisor
-        if command.tasks is not self._tasks:  # a behaviour mostly fills the same ones again
-            self._tasks = tasks = np.ascontiguousarray(command.tasks, TASK)
-            given.task, given.tasks = tasks.ctypes.data, k
-        self._poses[0], self._poses[1] = command.pose_a, command.pose_b
-        self._held_out[:] = command.held_out
-        given.behind = 0 if command.behind is None else command.behind.ctypes.data
+        answer, k = self._answer, len(command.tasks)
         m = self._library.rotctl_decide(self._self, state.data._address, *self._pointers)
         if m == FAILED:
             return None
@@ -197,6 +182,38 @@ class CompiledStep:
             residual=answer.residual,
             reasons=(),
         )
+
+    def ask(self, command: Command, blend: float) -> bool:
+        """Hand over what is wanted; False where C has not the supervisor, or no room for it."""
+        supervisor, k = SUPERVISORS.get(command.supervisor), len(command.tasks)
+        if supervisor is None or k > TASKS:
+            return False
+        given = self._command
+        gains = (command.pose, command.contact, command.thresholds)
+        if gains is not self._gains and gains != self._gains:
+            self._take(*gains)
+            self._gains = gains
+        self._forward[:] = command.forward
+        given.blend = blend
+        given.supervisor = supervisor
+        if command.tasks is not self._tasks:  # a behaviour mostly fills the same ones again
+            self._tasks = tasks = np.ascontiguousarray(command.tasks, TASK)
+            given.task, given.tasks = tasks.ctypes.data, k
+        self._poses[0], self._poses[1] = command.pose_a, command.pose_b
+        self._held_out[:] = command.held_out
+        given.behind = 0 if command.behind is None else command.behind.ctypes.data
+        return True
+
+    @property
+    def blend(self) -> float:
+        """Gamma of the step before, as C has it."""
+        return float(self._command.blend)
+
+    @property
+    def addresses(self) -> dict[str, int]:
+        """Of what C works on, by the names that `Run` in layout.h has for it."""
+        reading, command, answer = self._pointers
+        return {"self": self._self, "reading": reading, "command": command, "answer": answer}
 
     def _take(self, pose: PoseGains, contact: ContactGains, thresholds: Thresholds) -> None:
         given = self._command

@@ -35,6 +35,7 @@ class Controller:
         chain: the ways to solve a step, each for where those before it fail.
         backend: `compiled` or `reference`, whichever really works here.
         notice: what a user should know about that; mostly empty.
+        step: the compiled one; None where the reference does all.
     """
 
     def __init__(
@@ -63,16 +64,16 @@ class Controller:
             self.chain.append(Link("condensed", make_solver("boxqp"), rehearsal))
         self.chain.append(Link("condensed", ActiveSet(), rehearsal))
         wanted = settings.backend == "compiled" and serves(settings, model)
-        self._step = CompiledStep(model, settings) if wanted and library() else None
-        self.backend: BackendName = "compiled" if self._step else "reference"
+        self.step = CompiledStep(model, settings) if wanted and library() else None
+        self.backend: BackendName = "compiled" if self.step else "reference"
         missing = "the compiled control step " + NOT_BUILT.format(slower="several times")
-        self.notice = missing if wanted and not self._step else ""
-        if self._step and self._step.lacks:
-            self.notice = LACKS.format(kinds=", ".join(self._step.lacks))
+        self.notice = missing if wanted and not self.step else ""
+        if self.step and self.step.lacks:
+            self.notice = LACKS.format(kinds=", ".join(self.step.lacks))
 
     def read(self, data: mujoco.MjData) -> State:
         """The state in `data`, whose positions and contacts are up to date."""
-        state = self._step.read(data) if self._step else None
+        state = self.step.read(data) if self.step else None
         if state is None:
             state = read(self.model, data, self.settings.sees_disturbance, self.settings.merging)
         return state
@@ -84,7 +85,7 @@ class Controller:
             state: best the one that `read` returned last; any other takes the reference.
             blend: the previous step's gamma.
         """
-        decision = self._step.decide(state, command, blend) if self._step else None
+        decision = self.step.decide(state, command, blend) if self.step else None
         return self._decide(state, command, blend) if decision is None else decision
 
     def _decide(self, state: State, command: Command, blend: float) -> Decision:

@@ -129,6 +129,14 @@ class TrajectoryBuffer:
         arrays = {**self._allocated(), "events/time": times, "events/text": texts}
         return {name: arrays[name] for name in SCHEMA if name in arrays}
 
+    def per_step(self) -> dict[str, NDArray[Any]]:
+        """Returns the arrays of one row a control step, by the last part of their paths."""
+        return {
+            name.partition("/")[2]: array
+            for name, array in self._allocated().items()
+            if "steps" in SCHEMA[name].shape
+        }
+
     def _allocated(self) -> dict[str, NDArray[Any]]:
         return {name: _array(self, name) for name in _ALLOCATED}
 

@@ -96,6 +96,11 @@ class Motors:
         self._waiting: deque[Array] = deque()
 
     @property
+    def prompt(self) -> bool:
+        """Whether what is decided acts at once."""
+        return not self._delay
+
+    @property
     def pending(self) -> list[Array]:
         """Torques (nu,) of the coming control steps that are decided already."""
         return list(self._waiting)[-self._delay :] if self._delay else []

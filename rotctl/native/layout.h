@@ -21,6 +21,10 @@ typedef struct {
   void (*jacDot)(const mjModel*, const mjData*, mjtNum*, mjtNum*, const mjtNum*, int);
   void (*applyFT)(const mjModel*, mjData*, const mjtNum*, const mjtNum*, const mjtNum*, int,
                   mjtNum*);
+  void (*step1)(const mjModel*, mjData*);
+  void (*step2)(const mjModel*, mjData*);
+  void (*step)(const mjModel*, mjData*);
+  void (**error)(const char*);  // where MuJoCo looks whom to tell of what ends it
 } Functions;
 
 // One objective over the acceleration; see rotctl/control/task.py.
@@ -61,7 +65,7 @@ typedef struct {
   double threshold_force, threshold_torque, threshold_separation;
   int supervisor, pose_explicit, tasks;
   const Task* task;
-  const double *pose_a, *pose_b;
+  double *pose_a, *pose_b;
   const unsigned char* held_out;
   const double* behind;
 } Command;
@@ -83,6 +87,46 @@ typedef struct {
   int body[SLOTS];
   int count;
 } Sums;
+
+// The phase and what goes with it, as a roll remembers them; behaviours/rolling.py. The clock
+// (`due`, `late`) is the pace's.
+typedef struct {
+  double angle[3], orientation[4], phase, axis[3], origin[3], first_angle[3], due, late;
+} RollMemory;
+
+// A pace's settings; behaviours/pacing.py. Times of changes are (changes), rates one more.
+typedef struct {
+  double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, ahead;
+  double settling[2], brake, gain, most, usual[6];
+  int by_speed, changes, count;
+  const double *times, *rates;
+  const int* over;  // (count) bodies
+} Pace;
+
+// A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
+// `coefficients` (2, 3, nu); its two tasks are where the command has them.
+typedef struct {
+  double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
+  double sign, slope, period, correction_time, phase_time;
+  int column, integral, rows;
+  const double *table, *rise, *coefficients, *low, *high;
+  const Pace* pace;
+  Task* task;
+} Roll;
+
+// Where the rows of a run's log are: the datasets by their names, of one row after the other.
+typedef struct {
+  double *time, *qpos, *qvel, *ctrl, *com, *com_velocity, *linear_momentum, *angular_momentum;
+  double *angular_velocity, *angular_excursion, *blend, *phase, *trunk_axis, *trunk_axes;
+  double *linear_momentum_rate_desired, *linear_momentum_rate_predicted;
+  double *angular_momentum_rate_desired, *angular_momentum_rate_predicted;
+  double *axes, *target, *velocity, *error, *wanted, *predicted;
+  int *count, *body;
+  float *position, *normal, *force_predicted, *force_realised, *force_peak;
+  double *ground_force, *ground_force_peak, *penetration, *residual;
+  unsigned char* used;
+  int capacity, tasks;
+} Rows;
 
 struct Self;
 // A kind of objective: fills rows (k, nv) or, of momentum, (k, 6); returns k.
@@ -111,5 +155,23 @@ typedef struct Self {
   double *H, *f, *Hs, *fs, *x, *lower, *upper, *work;  // one quadratic program
   double *spare, *spare2;  // for each function what it calls them
 } Self;
+
+// One run of a roll, control period by control period.
+typedef struct {
+  Self* self;
+  mjData* data;
+  Reading* reading;
+  Command* command;
+  Answer* answer;
+  const Roll* roll;
+  const Rows* rows;
+  void* crowd;         // of a full pair of geoms Python tells the name
+  double extent[3];    // of the ground: x from, x to, y to either side
+  double period;       // of control [s]
+  int substeps, most;  // `most` contacts make a pair full
+  RollMemory memory;
+  Sums sums;
+  char error[200];  // what MuJoCo said when it gave up
+} Run;
 
 #endif

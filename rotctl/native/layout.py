@@ -12,7 +12,9 @@ from typing import Any
 HEADER = Path(__file__).with_name("layout.h")
 _TYPES: dict[str, Any] = {
     "double": ctypes.c_double,
+    "float": ctypes.c_float,
     "int": ctypes.c_int,
+    "char": ctypes.c_char,
     "long long": ctypes.c_longlong,
     "unsigned char": ctypes.c_ubyte,
 }
@@ -28,14 +30,14 @@ def constant(name: str) -> int:
 
 @cache
 def structure(name: str) -> type[ctypes.Structure]:
-    """A structure of numbers, arrays and pointers; a pointer is an address."""
+    """A structure of numbers, arrays, structures and pointers; a pointer is an address."""
     (body,) = re.findall(rf"typedef struct {{([^{{}}]*)}} {name};", _text())
     fields: list[tuple[str, Any]] = []
     for declaration in filter(None, map(str.strip, body.split(";"))):
         kind, declared = _DECLARATION.fullmatch(declaration).groups()  # type: ignore[union-attr]
         for declarator in declared.split(","):
             pointer, field, sizes = _DECLARATOR.fullmatch(declarator.strip()).groups()  # type: ignore[union-attr]
-            of = ctypes.c_void_p if pointer else _TYPES[kind]
+            of = ctypes.c_void_p if pointer else _TYPES.get(kind) or structure(kind)
             for size in reversed(re.findall(r"\w+", sizes)):
                 of = of * (int(size) if size.isdecimal() else constant(size))
             fields.append((field, of))

@@ -17,6 +17,7 @@ NOT_BUILT = (
 FUNCTIONS = (
     *("mj_mulM", "mj_solveM", "mj_factorM", "mju_boxQP"),
     *("mj_jac", "mj_jacDot", "mj_applyFT"),
+    *("mj_step1", "mj_step2", "mj_step", "mju_user_error"),
 )
 
 

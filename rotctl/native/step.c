@@ -155,3 +155,9 @@ int rotctl_decide(Self* s, mjData* d, const Reading* r, const Command* w, Answer
   }
   return r->count;
 }
+
+#include "pace.c"
+#include "roll.c"
+
+#include "row.c"
+#include "period.c"

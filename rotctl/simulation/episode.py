@@ -112,6 +112,8 @@ class Episode:
         data: MuJoCo's, which a reader must leave alone.
         breakdown: what broke down; empty if nothing did.
         left: where the character left the ground; empty if it did not.
+        memory, blend, phase: what the control period before left: the behaviour's memory, gamma
+            and the behaviour's phase [rad].
     """
 
     def __init__(self, parts: Parts, mark: Mark = lambda stage: None) -> None:
@@ -122,61 +124,68 @@ class Episode:
         """
         self.breakdown = self.left = ""
         self._parts, self._mark = parts, mark
+        self.memory: Any = None
+        self.blend, self.phase = INITIAL_BLEND, nan
         self.data = mujoco.MjData(parts.model.mj)
         usual = parts.behaviour.start(parts.start.pitch)
         place(parts.model, self.data, parts.start, usual, parts.behaviour.axes)
 
     def __iter__(self) -> Iterator[Moment]:
         """The moments, one a control period."""
+        while (moment := self.step()) is not None:
+            yield moment
+
+    def step(self) -> Moment | None:
+        """The next control period; None where the episode is over."""
         parts, data, mark = self._parts, self.data, self._mark
         model, behaviour, controller = parts.model, parts.behaviour, parts.controller
         period = 1.0 / controller.settings.rate
-        memory, blend, phase = None, INITIAL_BLEND, nan  # each is what the step before left
-        while True:
-            parts.stepper.evaluate(data)
-            self.breakdown = parts.stepper.complaint(data)
-            if self.breakdown:
-                return
-            outside = parts.disturbance.apply(data, period, phase)
-            mark("physics")
-            if parts.senses.exact:
-                truth = state = controller.read(data)
-            else:
-                truth = parts.observer.read(data)
-                state = controller.read(parts.senses.look(data))
-            mark("state")
-            self.left = _left(model.ground, truth)
-            if self.left:
-                return
-            if memory is None:
-                memory = behaviour.begin(parts.start.pitch, state)
-            memory = behaviour.advance(memory, state)
-            command = behaviour.command(memory, state)
-            signals = behaviour.signals(memory, state)
-            mark("command")
-            decision = controller.decide(state, command, blend)
-            mark("decision")
-            torque = parts.motors.act(decision.torque)
-            forces = parts.stepper.advance(data, torque, state.contacts)
-            x, y, _ = truth.momentum.com.tolist()
-            height = model.ground.height(x, y)
-            remarks = (parts.disturbance.remark, parts.senses.remark, parts.stepper.remark())
-            remark = "; ".join(filter(None, remarks))
-            mark("physics")
-            yield Moment(
-                truth=truth,
-                state=state,
-                command=command,
-                signals=signals,
-                blend=blend,
-                decision=decision,
-                torque=torque,
-                wrench=outside,
-                forces=forces,
-                ground_height=height,
-                remark=remark,
-            )
-            blend, phase = decision.blend, signals.phase
+        parts.stepper.evaluate(data)
+        self.breakdown = parts.stepper.complaint(data)
+        if self.breakdown:
+            return None
+        outside = parts.disturbance.apply(data, period, self.phase)
+        mark("physics")
+        if parts.senses.exact:
+            truth = state = controller.read(data)
+        else:
+            truth = parts.observer.read(data)
+            state = controller.read(parts.senses.look(data))
+        mark("state")
+        self.left = _left(model.ground, truth)
+        if self.left:
+            return None
+        before = self.memory
+        if before is None:
+            before = behaviour.begin(parts.start.pitch, state)
+        self.memory = memory = behaviour.advance(before, state)
+        command = behaviour.command(memory, state)
+        signals = behaviour.signals(memory, state)
+        mark("command")
+        blend = self.blend
+        decision = controller.decide(state, command, blend)
+        mark("decision")
+        torque = parts.motors.act(decision.torque)
+        forces = parts.stepper.advance(data, torque, state.contacts)
+        x, y, _ = truth.momentum.com.tolist()
+        height = model.ground.height(x, y)
+        remarks = (parts.disturbance.remark, parts.senses.remark, parts.stepper.remark())
+        remark = "; ".join(filter(None, remarks))
+        self.blend, self.phase = decision.blend, signals.phase
+        mark("physics")
+        return Moment(
+            truth=truth,
+            state=state,
+            command=command,
+            signals=signals,
+            blend=blend,
+            decision=decision,
+            torque=torque,
+            wrench=outside,
+            forces=forces,
+            ground_height=height,
+            remark=remark,
+        )
 
 
 def _left(ground: Ground, state: State) -> str:

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
-from rotctl.simulation.episode import Episode, Moment, Parts
+from rotctl.simulation.compiled_periods import compiled_periods
+from rotctl.simulation.episode import Episode, Parts
 from rotctl.simulation.record import record
 
 
@@ -24,7 +25,7 @@ class Outcome:
     left: str = ""
 
 
-Look = Callable[[TrajectoryBuffer, int], object]
+Look = Callable[[TrajectoryBuffer, int], bool | None]
 
 
 def nobody(buffer: TrajectoryBuffer, done: int) -> None:
@@ -36,7 +37,6 @@ def simulate(
     duration: float,
     capacity: int,
     progress: Callable[[], object] = lambda: None,
-    stop: Callable[[Moment], bool] = lambda moment: False,
     look: Look = nobody,
 ) -> Outcome:
     """Run one simulation.
@@ -45,8 +45,8 @@ def simulate(
         duration: simulated time [s], a whole number of control periods.
         capacity: contacts a log row can hold.
         progress: called after every control step.
-        stop: asked after every control step; True ends the run there, as nothing broke.
-        look: called after every control step with the rows and how many of them are written.
+        look: called after every control step with the rows and how many of them are written;
+            True ends the run there, as nothing broke.
 
     Raises:
         InputError: the duration is no whole number of control periods.
@@ -64,17 +64,24 @@ def simulate(
     buffer.model.task[:] = tasks
     buffer.model.joint[:] = parts.model.joint_names
     buffer.model.torque_limit[:] = parts.model.torque_limit
-    episode, done = Episode(parts), 0
-    for i, moment in enumerate(episode):
-        done = i + 1
-        time = moment.state.time
-        for event in (*moment.decision.reasons[-1:], moment.remark):
-            if event:
-                buffer.add_event(time, event)
-        record(buffer, i, moment)
+    episode = Episode(parts)
+    compiled = compiled_periods(parts, episode, buffer)
+    for i in range(steps):
+        if compiled is not None and compiled.make(i):
+            events: tuple[str, ...] = (compiled.remark,)
+        else:
+            moment = episode.step()
+            if moment is None:
+                buffer.add_event(i / rate, episode.breakdown or episode.left)
+                return Outcome(buffer.trimmed(i), episode.breakdown, episode.left)
+            record(buffer, i, moment)
+            events = (*moment.decision.reasons[-1:], moment.remark)
+            if compiled is not None:
+                compiled.follow(moment)
+        for event in filter(None, events):
+            buffer.add_event(buffer.trajectory.time[i], event)
         progress()
-        look(buffer, done)
-        if stop(moment) or done == steps:
-            return Outcome(buffer.trimmed(done), parts.stepper.complaint(episode.data))
-    buffer.add_event(done / rate, episode.breakdown or episode.left)
-    return Outcome(buffer.trimmed(done), episode.breakdown, episode.left)
+        if look(buffer, i + 1):
+            steps = i + 1
+            break
+    return Outcome(buffer.trimmed(steps), parts.stepper.complaint(episode.data))

@@ -56,7 +56,13 @@ class Stepper(Protocol):
 
 
 class MujocoStepper:
-    """MuJoCo's soft contacts: `substeps` steps with the torque held."""
+    """MuJoCo's soft contacts: `substeps` steps with the torque held.
+
+    Attributes:
+        substeps: of a control period.
+        period: of control [s].
+        periods: made so far.
+    """
 
     backend = "mujoco"
     notice = ""
@@ -64,11 +70,11 @@ class MujocoStepper:
     def __init__(self, model: Model, substeps: int) -> None:
         """Step `model` `substeps` times per control period."""
         self._mj = model.mj
-        self._substeps = substeps
-        self._period = substeps * model.mj.opt.timestep
+        self.substeps = substeps
+        self.period = substeps * model.mj.opt.timestep
         self._forces = ground_forces(model.mj)
         self._sound = _sound()
-        self._steps = 0
+        self.periods = 0
         self._crowd = ""
 
     def evaluate(self, data: mujoco.MjData) -> None:
@@ -82,10 +88,10 @@ class MujocoStepper:
         self._crowd = ""
         mujoco.mj_step2(self._mj, data)
         self._look(data)
-        for _ in range(self._substeps - 1):
+        for _ in range(self.substeps - 1):
             mujoco.mj_step(self._mj, data)
             self._look(data)
-        self._steps += 1
+        self.periods += 1
         return self._forces.result()
 
     def remark(self) -> str:
@@ -94,10 +100,10 @@ class MujocoStepper:
 
     def complaint(self, data: mujoco.MjData) -> str:
         """See `trouble`; mostly it is seen at once that there is none."""
-        late = abs(data.time - self._steps * self._period) > 0.5 * self._period
+        late = abs(data.time - self.periods * self.period) > 0.5 * self.period
         if self._sound and not late and self._sound(self._mj._address, data._address):
             return ""
-        return trouble(data, self._steps, self._period)
+        return trouble(data, self.periods, self.period)
 
     def _look(self, data: mujoco.MjData) -> None:
         """At the contacts of a physics step."""

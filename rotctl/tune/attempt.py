@@ -1,22 +1,20 @@
 """One training run, cut as soon as it is hopeless: the task that the engines carry out."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import acos, degrees, pi
 
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
 from rotctl.errors import InputError
+from rotctl.log import TrajectoryBuffer
 from rotctl.metrics.judge import judge
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
-from rotctl.simulation.episode import Moment
+from rotctl.simulation.loop import Look
 from rotctl.tune.objective import TrialRun
 from rotctl.tune.space import Stopping
-
-Stop = Callable[[Moment], bool]
 
 
 @dataclass(frozen=True)
@@ -45,7 +43,7 @@ def attempt(item: Attempt) -> TrialRun:
         )
     scenario = build(config)
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
-    buffer, _ = in_memory(scenario, stop=hopeless(item.stopping, commanded))
+    buffer, _ = in_memory(scenario, look=hopeless(item.stopping, commanded))
     asked, log = behaviour.commanded, buffer.arrays()
     judged = judge(log, criteria, asked, period, config.duration, scenario.model.mj)
     found = judged.columns
@@ -60,7 +58,7 @@ def attempt(item: Attempt) -> TrialRun:
     )
 
 
-def hopeless(stopping: Stopping, commanded: float) -> Stop:
+def hopeless(stopping: Stopping, commanded: float) -> Look:
     """A test for one run: has it stalled, or left its axis?
 
     Args:
@@ -70,14 +68,14 @@ def hopeless(stopping: Stopping, commanded: float) -> Stop:
     direction = -1.0 if commanded < 0 else 1.0
     mark: tuple[float, float] | None = None  # progress [rev] and time [s] when it last grew
 
-    def stop(moment: Moment) -> bool:
+    def stop(buffer: TrajectoryBuffer, done: int) -> bool:
         nonlocal mark
-        signals, time = moment.signals, moment.state.time
-        left = signals.axes[1]
-        progress = direction * dot(left, signals.angle) / (2.0 * pi)
+        rows, now = buffer.trajectory, done - 1
+        time, left = float(rows.time[now]), buffer.command.axes[now, 1]
+        progress = direction * dot(left, rows.angular_excursion[now]) / (2.0 * pi)
         if mark is None or progress >= mark[0] + stopping.stall_progress:
             mark = progress, time
-        off_axis = degrees(acos(min(max(dot(left, signals.axis), -1.0), 1.0)))
+        off_axis = degrees(acos(min(max(dot(left, rows.trunk_axis[now]), -1.0), 1.0)))
         return time - mark[1] >= stopping.stall_time or off_axis >= stopping.off_axis
 
     return stop

@@ -1,0 +1,107 @@
+"""A roll in C: its constants as `native/roll.c` takes them, and its memory to and fro."""
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rotctl.behaviours.facing import Frame
+from rotctl.behaviours.pacing import Clock, Pace
+from rotctl.mechanics.excursion import Excursion, ExcursionSettings
+from rotctl.motion import PosePair, ReferencePair
+from rotctl.native.layout import structure
+from rotctl.rotations import Array
+
+if TYPE_CHECKING:  # which makes one of these
+    from rotctl.behaviours.rolling import RollingMemory
+
+PACE = (  # its settings that C takes as they are
+    *("travel", "own", "calm", "swing", "swing_from", "surge", "surge_from", "wait", "width"),
+    *("ahead", "brake", "gain", "most"),
+)
+
+
+class CompiledRoll:
+    """What C needs of one roll.
+
+    Attributes:
+        constants: the structure `Roll`.
+    """
+
+    def __init__(
+        self,
+        frame: Frame,
+        measured: ExcursionSettings,
+        period: float,
+        slope: float,
+        velocities: tuple[Array, Array],
+        poses: PosePair | ReferencePair,
+        tasks: Array,
+    ) -> None:
+        """Hand the constants over.
+
+        Args:
+            period: of control [s].
+            slope: of the way [rad].
+            velocities: (3,) wanted of the centre of mass [m/s] and about it [rad/s].
+            tasks: the two that the roll's command holds, with the same memory.
+        """
+        self._kept: list[object] = []  # what the addresses are of
+        self.constants = constants = structure("Roll")(
+            sign=frame.sign,
+            slope=slope,
+            period=period,
+            correction_time=measured.correction_time,
+            phase_time=measured.phase_time,
+            column=frame.column,
+            integral=measured.measure == "integral",
+            task=self._at(tasks),
+        )
+        constants.axes[:], constants.front[:] = frame.axes.ravel(), frame.front
+        constants.velocity[:], constants.angular_velocity[:] = velocities
+        names: tuple[str, ...] = ("coefficients", "low", "high")
+        if isinstance(poses, ReferencePair):
+            constants.rows, names = len(poses.table), ("table", "rise")
+        for name in names:
+            setattr(constants, name, self._at(np.ascontiguousarray(getattr(poses, name))))
+
+    def add_pace(self, pace: Pace, way: Array, over: list[int], damping: Array) -> None:
+        """Keep a pace, too.
+
+        Args:
+            way: (3,) of the speed, unit.
+            over: bodies that it waits over.
+            damping: (2, 3) of the two tasks where it does not wait [1/s].
+        """
+        settings = pace.settings
+        made = structure("Pace")(
+            by_speed=settings.keep == "speed",
+            changes=len(pace.times),
+            count=len(over),
+            times=self._at(np.array(pace.times, float)),
+            rates=self._at(np.array(pace.rates, float)),
+            over=self._at(np.array(over, np.int32)),
+            **{name: getattr(settings, name) for name in PACE},
+        )
+        made.settling[:], made.usual[:] = settings.settling, damping.ravel()
+        self._kept.append(made)
+        self.constants.pace, self.constants.way[:] = ctypes.addressof(made), way
+
+    def _at(self, array: Any) -> int:
+        self._kept.append(array)
+        return int(array.ctypes.data)
+
+
+def put(memory: "RollingMemory", there: ctypes.Structure) -> None:
+    """What a roll remembers, into a structure `RollMemory`."""
+    now = memory.excursion
+    there.angle[:], there.orientation[:], there.phase = now
+    there.axis[:], there.origin[:], there.first_angle[:] = memory.axis, memory.origin, memory.angle
+    there.due, there.late = memory.clock
+
+
+def taken(there: ctypes.Structure, before: "RollingMemory") -> "RollingMemory":
+    """What it remembers now, of which origin and first angle are those of `before`."""
+    now = Excursion(np.array(there.angle), np.array(there.orientation), there.phase)
+    clock = Clock(there.due, there.late)
+    return before._replace(excursion=now, axis=np.array(there.axis), clock=clock)

@@ -1,0 +1,72 @@
+// behaviours/rolling.py with mechanics/excursion.py: what a roll remembers, and what it wants.
+#include "layout.h"
+#include "rotations.h"
+#include "small.h"
+
+// `integrate` and `keep_phase`: the memory of one control period later.
+static void turn_along(const Roll* r, const Reading* now, RollMemory* it) {
+  const double *left = r->axes + 3, *trunk = now->trunk_axes;
+  double turn[3], orientation[4], carried[3], off[3], across[3];
+  for (int i = 0; i < 3; i++) {
+    turn[i] = now->angular_velocity[i] * r->period;
+    it->axis[i] = trunk[3 * i + r->column] * r->sign;
+  }
+  turn_on(orientation, it->orientation, turn);
+  turn_vector(carried, orientation, left);
+  cross(off, carried, it->axis);
+  double pull = fmin(1, r->period / r->correction_time);
+  for (int i = 0; i < 3; i++) off[i] *= pull, it->angle[i] += turn[i];
+  turn_on(it->orientation, orientation, off);
+  double front[3] = {trunk[0], trunk[3], trunk[6]};
+  cross(across, r->front, front);
+  double turned = atan2(along(left, across), along(r->front, front)) + r->slope;
+  double phase = it->phase + along(left, turn);
+  double drift = modulo(turned - phase + mjPI, 2 * mjPI) - mjPI;
+  it->phase = phase + drift * fmin(1, r->period / r->phase_time);
+}
+
+// `error`: what is missing to the wanted excursion.
+static void missing_turn(const Roll* r, const RollMemory* it, double time, double* missing) {
+  const double* left = r->axes + 3;
+  double difference[3], carried[3], across[3];
+  for (int i = 0; i < 3; i++)
+    difference[i] = it->first_angle[i] + time * r->angular_velocity[i] - it->angle[i];
+  memcpy(missing, difference, sizeof difference);
+  if (r->integral) return;
+  turn_vector(carried, it->orientation, left);
+  turn_between(across, carried, left);
+  double plain = along(left, difference);
+  for (int i = 0; i < 3; i++) missing[i] = across[i] + left[i] * plain;
+}
+
+// motion/reference.py and motion/pose_pair.py `at`: both poses (2, nu) at a phase.
+static void poses_at(const Roll* r, double phase, int nu, double* a, double* b) {
+  double* pose[2] = {a, b};
+  if (r->rows) {
+    double place = modulo(phase / (2 * mjPI), 1) * r->rows;
+    int row = place < r->rows ? (int)place : r->rows - 1;
+    const double *from = r->table + 2 * row * nu, *rise = r->rise + 2 * row * nu;
+    for (int p = 0; p < 2; p++)
+      for (int i = 0; i < nu; i++)
+        pose[p][i] = from[p * nu + i] + (place - row) * rise[p * nu + i];
+    return;
+  }
+  double cosine = cos(phase), sine = sin(phase);
+  for (int p = 0; p < 2; p++) {
+    const double* mean = r->coefficients + 3 * p * nu;
+    for (int i = 0; i < nu; i++) {
+      double angle = mean[i] + cosine * mean[nu + i] + sine * mean[2 * nu + i];
+      pose[p][i] = fmin(fmax(angle, r->low[i]), r->high[i]);
+    }
+  }
+}
+
+// `advance` and `command`: `it` is the memory of the period before, and then of this one.
+static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading* now,
+                    RollMemory* it, const Command* w) {
+  turn_along(r, now, it);
+  if (r->pace) keep_pace(r, d, now, it);
+  poses_at(r, it->phase, s->nu, w->pose_a, w->pose_b);
+  for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
+  missing_turn(r, it, d->time, r->task[1].target);
+}
