@@ -18,7 +18,7 @@ import yaml
 from pydantic import Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import choosing, documents
+from rotctl import choosing, documents, own_body
 from rotctl.behaviours import BehaviourSettings
 from rotctl.checked import brief, checked, clip, unknown_key
 from rotctl.choosing import Assignment, simple
@@ -36,7 +36,7 @@ from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.judge import Criteria
 from rotctl.plain import NOTHING, Way, dotted, exchanged, leaves, member, put, way
 from rotctl.same import kept
-from rotctl.settings import STRICT, Positive
+from rotctl.settings import SPARSE, STRICT, Positive
 from rotctl.simulation.start import StartSettings
 
 if TYPE_CHECKING:
@@ -109,6 +109,13 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     Raises:
         InputError: as for `load`.
     """
+    body = own_body.named(overrides)
+    if body is None:
+        return _composed(overrides)
+    return {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
+
+
+def _composed(overrides: list[str]) -> dict[str, Any]:
     quick = [one for one in map(simple, overrides) if one]
     if len(quick) == len(overrides):
         data = _set_on_choices(quick)
@@ -285,15 +292,16 @@ def _plain_part(part: Any) -> Any:
 
 
 @cache
-def _names(shape: Any) -> tuple[str, ...]:
-    return tuple(part.name for part in fields(shape))
+def _names(shape: Any) -> tuple[tuple[str, bool], ...]:
+    return tuple((part.name, part.metadata == SPARSE) for part in fields(shape))
 
 
 def _plain_data(value: Any) -> Any:
     """As pydantic dumps it, whose serialisers take longer to build than a run needs them."""
     if is_dataclass(value):
         shape: Any = type(value)
-        return {name: _plain_data(getattr(value, name)) for name in _names(shape)}
+        parts = [(name, getattr(value, name), sparse) for name, sparse in _names(shape)]
+        return {name: _plain_data(it) for name, it, sparse in parts if it is not None or not sparse}
     if isinstance(value, dict):
         return {key: _plain_data(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):

@@ -5,6 +5,9 @@ from typing import Annotated
 from pydantic import AfterValidator, AllowInfNan, ConfigDict, Field, Strict
 
 STRICT = ConfigDict(defer_build=True, extra="forbid")
+# Of a field that is left out of plain data where it has no value: what a joint may have, say, and
+# most have not.
+SPARSE = {"sparse": True}
 
 
 def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:

@@ -181,7 +181,7 @@ def _what_is_shipped_is_composed_once():
     shipped, compose, known = config.conf_dir(), config.composed, {}
 
     def composed(overrides):
-        if config.folders() != (shipped,):
+        if config.folders() != (shipped,) or any("mjcf" in one for one in overrides):
             return compose(overrides)
         key = tuple(overrides)
         if key not in known:

@@ -15,6 +15,7 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
+from rotctl.mechanics.stature import grown
 from rotctl.run import in_memory
 from rotctl.scenario import build
 
@@ -204,3 +205,140 @@ def test_poses_may_name_what_it_has_not(robot):
     with pytest.raises(InputError, match="a pose names the unknown joint 'tail'"):
         made.model.motors("tail", "a pose")
     assert not in_memory(made)[1]
+
+
+def test_what_the_joints_have_is_kept(tmp_path):
+    """Springs, damping and armature: both models go the same way when they are let go."""
+    path = tmp_path / "robot.xml"
+    springs = text().replace(
+        'name="belly"', 'name="belly" damping="3" armature="0.02" stiffness="40" springref="-20"'
+    )
+    path.write_text(
+        springs.replace('_knee" axis', '_knee" damping="2" armature="0.1" stiffness="5" axis')
+    )
+    found = adopt(path, "mine")
+    joints = {j["name"]: j for b in found.character["bodies"] for j in b.get("joints", ())}
+    # The belly's spring is at rest where it is bent forward: its sign is turned with the tree.
+    assert joints["waist_y"]["spring"] == pytest.approx([40.0, np.radians(20)], abs=1e-4)
+    assert (joints["waist_y"]["damping"], joints["waist_y"]["armature"]) == (3.0, 0.02)
+    assert (joints["knee"]["damping"], joints["knee"]["spring"]) == (2.0, [5.0, 0.0])
+    ours = build(load_with(found.character)).model.mj
+    theirs = mujoco.MjModel.from_xml_path(str(path))
+    torques = []
+    for model, belly, knee, bent in (
+        (ours, "waist_y", "knee_l", 0.3), (theirs, "belly", "left_knee", -0.3)
+    ):  # fmt: skip
+        data = mujoco.MjData(model)
+        data.joint(belly).qpos, data.joint(belly).qvel = bent, 10 * bent
+        data.joint(knee).qpos, data.joint(knee).qvel = 0.7, 0.1
+        mujoco.mj_forward(model, data)
+        way = 1.0 if bent > 0 else -1.0
+        torques.append((way * data.joint(belly).qfrc_passive[0], *data.joint(knee).qfrc_passive))
+    assert torques[0] == pytest.approx(torques[1], abs=1e-3)
+
+
+def test_a_giant_has_the_springs_of_its_size(robot):
+    made = adopt(robot, "mine").character
+    knee = next(j for b in made["bodies"] for j in b.get("joints", ()) if j["name"] == "knee")
+    knee |= {"damping": 2.0, "armature": 0.1, "spring": [5.0, 0.3]}
+    big = load_with({**made, "height": 4 * made["height"], "mass": 64 * made["mass"]})
+    (found,) = (j for b in grown(big.character).bodies for j in b.joints if j.name == "knee")
+    assert found.spring == (5.0 * 64 * 4, 0.3)  # torques
+    assert found.damping == 2.0 * 64 * 4 * 2  # and by times, which grow by the root of lengths
+    assert found.armature == 0.1 * 64 * 4**2
+
+
+def test_what_is_no_mirror_image_is_told(tmp_path):
+    # An abduction of 30 to 60 degrees about +x is one to the outside on the left alone.
+    legs = {"left": "-30 60", "right": "-60 30"}
+    even = text()
+    for side, span in legs.items():
+        even = even.replace(
+            f'name="{side}_hip_x" axis="1 0 0" range="-30 60"',
+            f'name="{side}_hip_x" axis="1 0 0" range="{span}"',
+        )
+    path = tmp_path / "robot.xml"
+    said = []
+    for whole in (
+        even,
+        text(),
+        even.replace('name="right_knee" axis="0 -1 0"', 'name="right_knee" axis="0 -1 0.2"'),
+        even.replace('right_shin" pos="0 0 -0.4', 'right_shin" pos="0 0 -0.43'),
+    ):
+        path.write_text(whole)
+        said.append([note for note in adopt(path, "mine").notes if "mirror" in note])
+    ends = "): it is taken as the left one's mirror image"
+    assert said == [
+        [],
+        [f"the right thigh differs from the left one (the range of right_hip_x{ends}"],
+        [f"the right shin differs from the left one (the axis of right_knee{ends}"],
+        [f"the right shin differs from the left one (another place{ends}"],
+    ]
+
+
+BRICK = np.array([[x, y, z] for x in (-0.1, 0.3) for y in (-0.05, 0.05) for z in (0.0, 0.06)])
+FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6)]
+
+
+def stl(places):
+    corners = [np.array([0, 0, 1, *places[list(face)].ravel()], "<f4") for face in FACES]
+    facets = b"".join(each.tobytes() + b"\0\0" for each in corners)
+    return b"\0" * 80 + len(FACES).to_bytes(4, "little") + facets
+
+
+@pytest.mark.parametrize("name", ["foot.stl", "foot.STL", "foot.obj"])
+def test_capsules_stand_for_a_mesh(tmp_path, name):
+    turned = Rotation.from_euler("y", 30, degrees=True)
+    places = 10.0 * turned.apply(BRICK)  # a brick that lies askew in a file of decimetres
+    content = stl(places)
+    if name.endswith("obj"):
+        content = "".join("v {} {} {}\n".format(*p) for p in places).encode() + b"f 1 2 3\n"
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / name).write_bytes(content)
+    whole = text().replace(
+        '<geom type="box" size="0.1 0.04 0.03" pos="0.05 0 -0.03" mass="1"/>',
+        '<geom type="mesh" mesh="foot" pos="0 0 -0.06" euler="0 -30 0" mass="1"/>',
+    )
+    assets = f'<asset><mesh name="foot" file="{name}" scale="0.1 0.1 0.1"/></asset>'
+    whole = whole.replace('angle="degree"', 'angle="degree" meshdir="meshes"')
+    path = tmp_path / "robot.xml"
+    path.write_text(whole.replace("<worldbody>", assets + "<worldbody>"))
+    found = adopt(path, "mine")
+    (foot,) = (b for b in found.character["bodies"] if b["name"] == "foot")
+    ends = np.array([[g["start"], g["end"]] for g in foot["geoms"]])
+    # Two edges of 6 cm: as long and as wide as the brick is with their roundings.
+    assert [g["size"] for g in foot["geoms"]] == [pytest.approx(0.03, abs=1e-3)] * 2
+    assert ends[..., 0].min() == pytest.approx(-0.07, abs=2e-3)
+    assert ends[..., 0].max() == pytest.approx(0.27, abs=2e-3)
+    assert np.ptp(ends[..., 1]) == pytest.approx(0.04, abs=2e-3)
+    assert ends[..., 2] == pytest.approx(-0.03, abs=2e-3)
+    without = adopt(path, "mine", meshes=False)
+    assert "2 shapes that are meshes are left out" in without.notes
+
+
+@pytest.mark.parametrize(
+    ("file", "reason"),
+    [
+        ("../../foot.stl", "/meshes/../../foot.stl: is not below the model's folder"),
+        ("none.stl", "/meshes/none.stl: no such file"),
+        ("foot.dae", "/meshes/foot.dae: is no .stl or .obj"),
+        ("empty.stl", "/meshes/empty.stl: has no vertices that make a shape"),
+        ("link.stl", "/meshes/link.stl: is not below the model's folder"),
+    ],
+)
+def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, file, reason):
+    robot = tmp_path / "robot"
+    (robot / "meshes").mkdir(parents=True)
+    (tmp_path / "foot.stl").write_bytes(stl(BRICK))
+    (robot / "meshes/foot.dae").write_text("<COLLADA/>")
+    (robot / "meshes/empty.stl").write_text("solid nothing\nendsolid\n")
+    (robot / "meshes/link.stl").symlink_to(tmp_path / "foot.stl")
+    assets = f'<asset><mesh name="foot" file="../meshes/{file}"/></asset>'
+    whole = text().replace('angle="degree"', 'angle="degree" meshdir="x/"')
+    box = '<geom type="box"'
+    whole = whole.replace(box, f'<geom type="mesh" mesh="foot" mass="1"/>{box}')
+    (robot / "x").mkdir()
+    (robot / "robot.xml").write_text(whole.replace("<worldbody>", assets + "<worldbody>"))
+    notes = adopt(robot / "robot.xml", "mine").notes
+    assert notes[0].endswith(f"{reason}: left out")
+    assert notes[1] == "2 shapes that are meshes are left out"

@@ -17,10 +17,11 @@ import numpy as np
 
 from rotctl.adopting.names import give_names
 from rotctl.adopting.shapes import numbers, shapes, stature
+from rotctl.adopting.sides import unlike
+from rotctl.adopting.solid import solid
 from rotctl.adopting.straight import face_forward, straighten
 from rotctl.adopting.tree import Segment, hung
 from rotctl.errors import InputError
-from rotctl.mechanics.foreign import solid
 from rotctl.motion.naming import find_roles
 
 _ADULT = {
@@ -57,17 +58,20 @@ class Adopted:
     notes: list[str]
 
 
-def adopt(path: Path, name: str, given: Mapping[str, str] | None = None) -> Adopted:
+def adopt(
+    path: Path, name: str, given: Mapping[str, str] | None = None, *, meshes: bool = True
+) -> Adopted:
     """Read a humanoid of hinges.
 
     Args:
         name: of the character.
         given: roles that the user has named, see `rotctl.motion.naming.find_roles`.
+        meshes: whether capsules stand for them; without, they are left out.
 
     Raises:
         InputError: it is none.
     """
-    mj, notes = solid(path)
+    mj, notes = solid(path, meshes=meshes)
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
     parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
                for b in range(1, mj.nbody)}  # fmt: skip
@@ -87,7 +91,7 @@ def adopt(path: Path, name: str, given: Mapping[str, str] | None = None) -> Adop
     face_forward(data, bodies)
     segments = hung(mj, data, bodies["hips"])
     give_names(segments, bodies, names)
-    notes += _hang_joints(segments)
+    notes += [*_hang_joints(segments), *unlike(mj, segments)]
     total = float(mj.body_mass[1:].sum())
     scale = stature(mj, data)
     made = _character(mj, data, segments, name, total, scale, notes)
@@ -137,6 +141,12 @@ def _character(
     height = float(reach[1] - reach[0])
     share = total / ADULT_MASS * height / ADULT_HEIGHT
     bodies, made_up = [], set()
+    hinges = [h for s in segments.values() for h in s.hinges]
+    damping = float(np.median([h.damping for h in hinges]))
+    damping = round(damping or share * (height / ADULT_HEIGHT) ** 0.5, 5)
+    armature = float(np.median([h.armature for h in hinges]))
+    armature = round(armature or 0.01 * share * height / ADULT_HEIGHT, 6)
+    silent = not any(h.damping or h.armature for h in hinges)
     for segment in segments.values():
         if segment.side == "right":
             continue
@@ -151,14 +161,19 @@ def _character(
             group = hinge.name.partition("_")[0]
             if hinge.torque is None:
                 made_up.add(hinge.name)
-            joints.append(
-                {
-                    "name": hinge.name,
-                    "axis": numbers(hinge.axis),
-                    "range": numbers([min(hinge.low, -1e-3), max(hinge.high, 1e-3)]),
-                    "torque": round(float(hinge.torque or share * _ADULT[group]), 2),
-                }
-            )
+            joint = {
+                "name": hinge.name,
+                "axis": numbers(hinge.axis),
+                "range": numbers([min(hinge.low, -1e-3), max(hinge.high, 1e-3)]),
+                "torque": round(float(hinge.torque or share * _ADULT[group]), 2),
+            }
+            if not silent and round(hinge.damping, 5) != damping:
+                joint["damping"] = round(hinge.damping, 5)
+            if not silent and round(hinge.armature, 6) != armature:
+                joint["armature"] = round(hinge.armature, 6)
+            if hinge.stiffness:
+                joint["spring"] = numbers([hinge.stiffness, hinge.rest])
+            joints.append(joint)
         body |= {"joints": joints} if joints else {}
         body["geoms"] = shapes(mj, data, segment, total)
         bodies.append(body)
@@ -167,7 +182,6 @@ def _character(
             f"no torque limit in the file for {', '.join(sorted(made_up))}: as strong as the adult "
             "for its mass and height"
         )
-    hinges = [h for s in segments.values() for h in s.hinges]
     there = {body["name"] for body in bodies}
     has = {hinge.name for hinge in hinges}
     absent = [joint for joint in JOINTS if joint not in has]
@@ -175,10 +189,6 @@ def _character(
     while b >= 0:
         trunk.append(segments[b].name)
         b = segments[b].parent
-    damping = float(np.median([h.damping for h in hinges]))
-    damping = damping or share * (height / ADULT_HEIGHT) ** 0.5
-    armature = float(np.median([h.armature for h in hinges]))
-    armature = armature or 0.01 * share * height / ADULT_HEIGHT
     root = segments[next(iter(segments))]
     return {
         "name": name,
@@ -188,8 +198,8 @@ def _character(
         "drawn": {"height": round(height, 4), "mass": round(total, 4)},
         "strength": 1.0,
         "root_height": round(float(root.origin[2] - reach[0]), 5),
-        "joint_damping": round(damping, 5),
-        "joint_armature": round(armature, 6),
+        "joint_damping": damping,
+        "joint_armature": armature,
         "limit_solref": [0.03, 1.0],
         "trunk": trunk[::-1],
         "exclude_from_control": [],

@@ -43,16 +43,23 @@ def give_names(segments: dict[int, Segment], bodies: Mapping[str, int], names: l
     ours = {bodies[role]: OUR_BODIES[role] for role in ("hips", "chest", "head") if role in bodies}
     if "head" in bodies:
         groups |= {b: "neck" for b in _chain(segments, bodies["head"]) if b not in trunk}
+    alike: list[tuple[int, int]] = []
     for parts in (("shoulder", "elbow", "wrist"), ("hip", "knee", "ankle")):
+        limbs = []
         for side in ("left", "right"):
             joints = {
                 part: bodies[f"{side}_{part}"] for part in parts if f"{side}_{part}" in bodies
             }
-            _name_limb(segments, trunk, joints, groups, ours)
+            limbs.append(_name_limb(segments, trunk, joints, groups, ours))
+        alike += zip(*limbs, strict=False)
     groups |= {b: "more" for b, s in segments.items() if b not in groups and s.hinges}
     if len(trunk) > 2:
         ours[trunk[-2]] = "waist"
     _pair_up(segments, names)
+    for left, right in alike:  # in the same place, whatever they are called
+        if not segments[left].side and not segments[right].side:
+            segments[left].side, segments[right].side = "left", "right"
+            segments[left].name = segments[right].name = _bare(names[left])
     for body, segment in segments.items():
         plain = segment.name or _bare(names[body])
         segment.name = ours.get(body) or plain + "_link" * (plain in ours.values())
@@ -74,11 +81,14 @@ def _name_limb(
     joints: Mapping[str, int],
     groups: dict[int, str],
     ours: dict[int, str],
-) -> None:
+) -> list[int]:
     """Add a limb's bodies: to which joint's group each belongs, and which is a segment of ours.
 
     Args:
         joints: hip, knee, ankle or shoulder, elbow, wrist, to the body that each moves first.
+
+    Returns:
+        They, from the trunk on.
     """
     last = list(joints.values())[-1]
     members = [body for body in _chain(segments, last) if body not in trunk]
@@ -86,7 +96,7 @@ def _name_limb(
     part = starts[min(starts)]
     for k, body in enumerate(members):
         part = starts.get(k, part)
-        groups[body] = part
+        groups[body] = part if k >= min(starts) else "more"
         last_of_it = k + 1 == len(members) or k + 1 in starts  # before the next joint
         if last_of_it and k >= min(starts):  # a collar bone is before the first
             ours[body] = OUR_BODIES.get(f"left_{part}", "")
@@ -94,6 +104,7 @@ def _name_limb(
     groups |= dict.fromkeys(below, part)
     if part == "ankle" and below:  # the sole is below the last of the ankle's hinges
         ours[below[-1]] = ours.pop(members[-1])
+    return members + below
 
 
 def _pair_up(segments: Mapping[int, Segment], names: list[str]) -> None:
@@ -149,6 +160,7 @@ def _called(hinge: Hinge, name: str, letter: int, group: str) -> None:
     hinge.name = name
     if hinge.axis[letter] * _AXES[group][letter] < 0.0:
         hinge.axis, hinge.low, hinge.high = -hinge.axis, -hinge.high, -hinge.low
+        hinge.rest = -hinge.rest
 
 
 def _pair(name: str, names: list[str]) -> tuple[str, str] | None:

@@ -8,6 +8,8 @@ import numpy as np
 from rotctl.adopting.tree import Segment
 from rotctl.rotations import Array
 
+_BOXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_MESH)
+
 
 def pieces(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> list[tuple[Array, Array, float]]:
     """The solid shapes of a body as capsules from start to end with a radius; world axes."""
@@ -22,12 +24,14 @@ def pieces(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> list[tuple[Arr
         elif kind == mujoco.mjtGeom.mjGEOM_CYLINDER:
             half, radius = max(float(size[1] - size[0]), 0.0), float(min(size[0], size[1]))
             found.append((centre - half * axes[2], centre + half * axes[2], radius))
-        elif kind in (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_ELLIPSOID):
+        elif kind in (*_BOXES, mujoco.mjtGeom.mjGEOM_ELLIPSOID):
+            if kind == mujoco.mjtGeom.mjGEOM_MESH:  # of which there are the corners of a box
+                centre, size = centre + axes.T @ mj.geom_aabb[g, :3], mj.geom_aabb[g, 3:]
             thin, middle, long = np.argsort(size)
             radius = float(size[thin])
             half = (size[long] - radius) * axes[long]
             beside = max(float(size[middle]) - radius, 0.0) * axes[middle]
-            wide = kind == mujoco.mjtGeom.mjGEOM_BOX and size[middle] > 1.3 * radius
+            wide = kind in _BOXES and size[middle] > 1.3 * radius
             for side in (-1.0, 1.0) if wide else (0.0,):  # a plate has two edges
                 place = centre + side * beside
                 found.append((place - half, place + half, radius))

@@ -15,6 +15,7 @@ class Hinge:
     Attributes:
         axis: of the body away from the pelvis against the one towards it.
         low, high: from there [rad].
+        stiffness: of its spring [N m/rad], which gives nothing at the angle `rest` [rad].
     """
 
     source: str
@@ -25,6 +26,8 @@ class Hinge:
     torque: float | None
     damping: float
     armature: float
+    stiffness: float
+    rest: float
     name: str = ""
 
 
@@ -79,6 +82,8 @@ def _hinges(mj: mujoco.MjModel, data: mujoco.MjData, body: int, sign: float) -> 
                 torque=_torque(mj, joint),
                 damping=float(mj.dof_damping[dof]),
                 armature=float(mj.dof_armature[dof]),
+                stiffness=float(mj.jnt_stiffness[joint]),
+                rest=float(mj.qpos_spring[mj.jnt_qposadr[joint]]) - now,
             )
         )
     return found

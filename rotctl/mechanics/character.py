@@ -1,5 +1,6 @@
 """A character from numbers: bodies, joints and capsules of `conf/character/*.yaml` to MjSpec."""
 
+from dataclasses import field
 from typing import Annotated
 
 import mujoco
@@ -9,19 +10,35 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
-from rotctl.settings import STRICT, Fraction, NonNegative, Positive, Range, Vector
+from rotctl.settings import (
+    SPARSE,
+    STRICT,
+    Finite,
+    Fraction,
+    NonNegative,
+    Positive,
+    Range,
+    Vector,
+)
 
 Colour = tuple[Fraction, Fraction, Fraction]
 
 
 @validated(frozen=True, config=STRICT)
 class Joint:
-    """One hinge: axis in the body's frame, range [rad], torque limit [N m]."""
+    """One hinge: axis in the body's frame, range [rad], torque limit [N m].
+
+    `damping` [N m s/rad] and `armature` [kg m2] are the character's where absent; a spring is
+    its stiffness [N m/rad] and the angle [rad] at which it gives nothing.
+    """
 
     name: str
     axis: Vector
     range: Range
     torque: Positive
+    damping: NonNegative | None = field(default=None, metadata=SPARSE)
+    armature: NonNegative | None = field(default=None, metadata=SPARSE)
+    spring: tuple[NonNegative, Finite] | None = field(default=None, metadata=SPARSE)
 
 
 @validated(frozen=True, config=STRICT)
@@ -169,14 +186,17 @@ def _add_body(
 def _add_joint(made: mujoco.MjsBody, character: Character, joint: Joint, side: str) -> None:
     # An axis is a pseudo-vector: its in-plane part changes sign in a mirror.
     x, y, z = joint.axis
+    stiffness, rest = joint.spring or (0.0, 0.0)
     made.add_joint(
         name=joint.name + side,
         type=mujoco.mjtJoint.mjJNT_HINGE,
         axis=[-x, y, -z] if side == "_r" else [x, y, z],
         range=joint.range,
         limited=True,
-        damping=character.joint_damping,
-        armature=character.joint_armature,
+        damping=character.joint_damping if joint.damping is None else joint.damping,
+        armature=character.joint_armature if joint.armature is None else joint.armature,
+        stiffness=stiffness,
+        springref=rest,
         solref_limit=character.limit_solref,
     )
 

@@ -18,11 +18,9 @@ MAX_BYTES = 4_000_000
 MAX_ELEMENTS = 20_000
 MAX_DEPTH = 100
 _RUNS = ("include", "plugin", "extension", "replicate", "composite", "flexcomp", "attach", "frame")
-_BONES = ("body", "joint", "freejoint", "geom", "default", "worldbody", "mujoco", "compiler")
+BONES = ("body", "joint", "freejoint", "geom", "default", "worldbody", "mujoco", "compiler")
 _FILES = ("mesh", "material", "hfield", "fitscale")  # of a geom, what needs more than this file
 _MEASURES = ("angle", "eulerseq", "autolimits", "coordinate")
-_MOTORS = ("actuator", "motor", "general", "position", "velocity")
-_FEATHER = {"pos": "0 0 0", "mass": "0.001", "diaginertia": "1e-6 1e-6 1e-6"}
 _MASS = {"pos": "0 0 0", "mass": "1", "diaginertia": "1 1 1"}
 
 
@@ -65,25 +63,10 @@ def skeleton(path: Path) -> mujoco.MjModel:
     """
     root = read_mjcf(path)
     _keep_bones(root)
-    return _compiled(path, root)
+    return compiled(path, root)
 
 
-def solid(path: Path) -> tuple[mujoco.MjModel, list[str]]:
-    """Bodies, joints, motors and the shapes that are no meshes, with their masses.
-
-    Returns:
-        The model, and notes on what was left out.
-
-    Raises:
-        InputError: it is no model with hinges on a free root.
-    """
-    root = read_mjcf(path)
-    meshes = _keep_shapes(root)
-    notes = [f"{meshes} shapes that are meshes are left out"] if meshes else []
-    return _compiled(path, root), notes
-
-
-def _compiled(path: Path, root: ElementTree.Element) -> mujoco.MjModel:
+def compiled(path: Path, root: ElementTree.Element) -> mujoco.MjModel:
     """The model of what is left of a file.
 
     Raises:
@@ -124,12 +107,12 @@ def require_hinges(path: Path, model: mujoco.MjModel) -> None:
 def _keep_bones(root: ElementTree.Element) -> None:
     """Leave out all that says nothing on where bodies are."""
     for part in [part for part in root if part.tag == "default"]:
-        _forget_meshes(part)
+        forget_meshes(part)
     waiting = [root]
     while waiting:
         element = waiting.pop()
         for child in list(element):
-            if child.tag not in _BONES or (child.tag == "geom" and _is_mesh(child)):
+            if child.tag not in BONES or (child.tag == "geom" and is_mesh(child)):
                 element.remove(child)
         for name in _FILES if element.tag == "geom" else ():
             element.attrib.pop(name, None)
@@ -140,34 +123,13 @@ def _keep_bones(root: ElementTree.Element) -> None:
         waiting.extend(element)
 
 
-def _keep_shapes(root: ElementTree.Element) -> int:
-    """Leave out all but bodies, shapes and motors; how many meshes that were."""
-    waiting, meshes = [root], 0
-    while waiting:
-        element = waiting.pop()
-        for child in list(element):
-            mesh = child.tag == "geom" and _is_mesh(child)
-            meshes += mesh and element.tag == "body"
-            elsewhere = element.tag == "actuator" and "joint" not in child.attrib
-            if child.tag not in (*_BONES, *_MOTORS, "inertial") or mesh or elsewhere:
-                element.remove(child)
-        for name in _FILES if element.tag == "geom" else ():
-            element.attrib.pop(name, None)
-        if element.tag == "compiler":
-            element.attrib = {k: v for k, v in element.attrib.items() if not k.endswith("dir")}
-        if element.tag == "body" and not any(c.tag in ("geom", "inertial") for c in element):
-            ElementTree.SubElement(element, "inertial", _FEATHER)
-        waiting.extend(element)
-    for part in [part for part in root if part.tag == "default"]:
-        _forget_meshes(part)
-    return meshes
-
-
-def _forget_meshes(defaults: ElementTree.Element) -> None:
+def forget_meshes(defaults: ElementTree.Element) -> None:
+    """Have shapes no meshes by default."""
     for geom in defaults.iter("geom"):
         if geom.get("type") in ("mesh", "hfield", "sdf"):
             del geom.attrib["type"]
 
 
-def _is_mesh(geom: ElementTree.Element) -> bool:
+def is_mesh(geom: ElementTree.Element) -> bool:
+    """Whether a shape is one that needs a file."""
     return "mesh" in geom.attrib or geom.get("type") in ("mesh", "hfield", "sdf")

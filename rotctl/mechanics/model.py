@@ -6,8 +6,8 @@ is block diagonal in the two, so that control can work on full vectors and leave
 """
 
 import re
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 
 import mujoco
 import numpy as np
@@ -84,16 +84,41 @@ class Model:
         """
         named = (joint, *(joint + side for side in SIDES))
         motors = [i for i, name in enumerate(self.joint_names) if name in named]
-        if not motors and not joint.endswith(SIDES) and joint in self.absent:
+        if not motors and _bare(joint) in self.absent:
             return []
         if not motors:
             left, right = SIDES
-            bases = sorted({n.removesuffix(left).removesuffix(right) for n in self.joint_names})
+            bases = sorted(set(map(_bare, self.joint_names)))
             raise InputError(
                 f"{key} names the unknown joint {joint!r}; "
                 f"valid: {', '.join(bases)}, limb joints also with {left} or {right}"
             )
         return motors
+
+    def posed(self, angles: Mapping[str, float | Sequence[float]], key: str, rows: int) -> Array:
+        """Angles by joint name as rows (rows, nu) in motor order; joints not named are at 0.
+
+        What a chest would bend that this character has not, its waist bends beside its own.
+
+        Raises:
+            InputError: there is no such joint; `key` says where it stands.
+        """
+        found = np.zeros((rows, len(self.joint_names)))
+        absent = [name for name in angles if not self.motors(name, key)]
+        for name in angles:
+            found[:, self.motors(name, key)] = np.asarray(angles[name]).reshape(-1, 1)
+        for name in absent:
+            group, _, axis = name.partition("_")
+            stands_in = f"waist_{axis}"
+            if group == "chest" and stands_in in self.joint_names:
+                motor = self.joint_names.index(stands_in)
+                found[:, motor] += np.asarray(angles[name])
+        return found
+
+
+def _bare(joint: str) -> str:
+    """A joint's name without its side."""
+    return joint.removesuffix(SIDES[0]).removesuffix(SIDES[1])
 
 
 def build(
@@ -127,8 +152,9 @@ def build(
     ground = terrain.make(np.random.default_rng([seed, TERRAIN_STREAM]), reach)
     add_tiles(spec)
     try:
-        added = physics.implicit_damping(character.joint_damping, spec.option.timestep)
-        add_character(spec, replace(character, joint_armature=character.joint_armature + added))
+        add_character(spec, character)
+        for joint in spec.joints:
+            joint.armature += physics.implicit_damping(joint.damping[0], spec.option.timestep)
         vary(spec)
         ground.add(spec)
         mj, mjcf = _compiled(spec)

@@ -8,7 +8,7 @@ is a motion of the other, only slower, and it is as strong for its weight. `stre
 from dataclasses import dataclass, replace
 from math import sqrt
 
-from rotctl.mechanics.character import Body, Character, Drawn, Geom
+from rotctl.mechanics.character import Body, Character, Drawn, Geom, Joint
 from rotctl.settings import Vector
 
 
@@ -75,10 +75,21 @@ def _body(body: Body, by: Likeness, strength: float) -> Body:
     return replace(
         body,
         position=_times(body.position, by.size),
-        joints=tuple(
-            replace(joint, torque=joint.torque * by.torque * strength) for joint in body.joints
-        ),
+        joints=tuple(_joint(joint, by, strength) for joint in body.joints),
         geoms=tuple(_geom(geom, by.size) for geom in body.geoms),
+    )
+
+
+def _joint(joint: Joint, by: Likeness, strength: float) -> Joint:
+    def times(value: float | None, factor: float) -> float | None:
+        return None if value is None else value * factor
+
+    return replace(
+        joint,
+        torque=joint.torque * by.torque * strength,
+        damping=times(joint.damping, by.torque * by.time),
+        armature=times(joint.armature, by.torque * by.size),
+        spring=joint.spring and (joint.spring[0] * by.torque, joint.spring[1]),
     )
 
 

@@ -85,9 +85,7 @@ class Clip:
         Raises:
             InputError: the clip names a joint that the model has not.
         """
-        poses = np.zeros((self.samples, len(model.joint_names)))
-        for name, samples in self.joints.items():
-            poses[:, model.motors(name, f"clip {self.name!r}")] = np.array([samples]).T
+        poses = model.posed(self.joints, f"clip {self.name!r}", self.samples)
         return np.asarray(np.clip(poses, *model.joint_range.T))
 
 

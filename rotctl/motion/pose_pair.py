@@ -77,17 +77,15 @@ def make_pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     Raises:
         InputError: a name is no joint of the model.
     """
-    pose = np.zeros(len(model.joint_names))
-    for name, angle in angles.items():
-        pose[model.motors(name, key)] = angle
+    (pose,) = model.posed(angles, key, 1)
     return np.asarray(
         np.minimum(np.maximum(pose, model.joint_range[:, 0]), model.joint_range[:, 1])
     )
 
 
 def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
-    columns = np.zeros((3, len(model.joint_names)))
-    for name, angle in pose.items():
-        values = (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle
-        columns[:, model.motors(name, key)] = np.array(values)[:, None]
-    return columns
+    waves = {
+        name: (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle
+        for name, angle in pose.items()
+    }
+    return model.posed(waves, key, 3)

@@ -1,0 +1,115 @@
+"""Meshes of a foreign model as boxes: what of them can touch, by their vertices alone.
+
+Only files below the model's own folder are read, and nothing but numbers out of them: MuJoCo never
+sees a stranger's mesh.
+"""
+
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from rotctl import files
+from rotctl.errors import InputError
+from rotctl.rotations import Array
+
+MAX_MESHES = 500
+MAX_BYTES = 30_000_000  # of one file
+MAX_WHOLE = 300_000_000  # of all of them
+_HEADER, _FACET = 84, 50  # bytes of a binary STL, and of each of its triangles
+_NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
+_VERTEX = re.compile(rb"^\s*v(?:ertex)?\s+" + b"\\s+".join([_NUMBER.encode()] * 3), re.MULTILINE)
+_KEPT = ("name", "class", "scale", "refpos", "refquat", "vertex")
+
+
+def boxed(path: Path, root: ElementTree.Element) -> list[str]:
+    """Give each mesh of a model the corners of its box in place of its file.
+
+    Args:
+        root: of the model at `path`; its mesh elements are changed, and go where none is read.
+
+    Returns:
+        Why meshes could not be read, one line each.
+    """
+    folder, left, found = _folder(path, root), MAX_WHOLE, []
+    number = 0
+    for assets in root.iter("asset"):
+        for mesh in list(assets):
+            if mesh.tag != "mesh":
+                assets.remove(mesh)
+                continue
+            number += 1
+            file = mesh.get("file")
+            try:
+                if number > MAX_MESHES:
+                    raise InputError(f"{path}: has more than {MAX_MESHES} meshes")
+                if file is not None:
+                    place = _inside(path.parent, folder / file)
+                    content = files.read(place, min(MAX_BYTES, left), linked=False)
+                    left -= len(content)
+                    mesh.set("name", mesh.get("name") or Path(file).stem)
+                    mesh.set("vertex", _text(box(vertices(place, content))))
+                for name in [name for name in mesh.attrib if name not in _KEPT]:
+                    del mesh.attrib[name]
+            except InputError as error:
+                found.append(f"{error}: left out")
+                assets.remove(mesh)
+    return found
+
+
+def vertices(path: Path, content: bytes) -> Array:
+    """The vertices (n, 3) of an STL or OBJ file, as it has them.
+
+    Raises:
+        InputError: `<path>: <reason>`.
+    """
+    kind = path.suffix.lower()
+    if kind not in (".stl", ".obj"):
+        raise InputError(f"{path}: is no .stl or .obj")
+    count = int.from_bytes(content[80:84], "little") if len(content) >= _HEADER else -1
+    if kind == ".stl" and len(content) == _HEADER + _FACET * count:
+        facets = np.frombuffer(content, np.uint8, offset=_HEADER).reshape(-1, _FACET)
+        found = facets[:, 12:48].copy().view("<f4").reshape(-1, 3).astype(float)
+    else:
+        try:
+            found = np.array(_VERTEX.findall(content), dtype=float).reshape(-1, 3)
+        except ValueError:
+            found = np.zeros((0, 3))
+    if len(found) < 3 or not np.isfinite(found).all() or np.abs(found).max() > 1e6:
+        raise InputError(f"{path}: has no vertices that make a shape")
+    return np.asarray(found)
+
+
+def box(places: Array) -> Array:
+    """The corners (8, 3) of the smaller of two boxes: along the axes, or as the points lie."""
+    places = np.unique(places, axis=0)  # of an STL, where many triangles meet in one
+    centre = places.mean(axis=0)
+    own = np.linalg.eigh(np.cov((places - centre).T))[1]
+    best, least = np.zeros((8, 3)), np.inf
+    for axes in (np.eye(3), own):
+        along = (places - centre) @ axes
+        low, high = along.min(axis=0), along.max(axis=0)
+        thin = np.maximum(high - low, 1e-3 * max(float((high - low).max()), 1e-9))
+        if thin.prod() < least:
+            least = float(thin.prod())
+            signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
+            best = centre + (0.5 * (low + high) + signs * thin) @ axes.T
+    return np.asarray(best)
+
+
+def _folder(path: Path, root: ElementTree.Element) -> Path:
+    """Where the files of meshes are named from."""
+    compiler = root.find("compiler")
+    named = {} if compiler is None else compiler.attrib
+    return path.parent / named.get("meshdir", named.get("assetdir", ""))
+
+
+def _inside(folder: Path, file: Path) -> Path:
+    if not file.resolve().is_relative_to(folder.resolve()):
+        raise InputError(f"{file}: is not below the model's folder")
+    return file
+
+
+def _text(corners: Array) -> str:
+    return " ".join(f"{x:.9g}" for x in corners.ravel())

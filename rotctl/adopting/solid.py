@@ -1,0 +1,63 @@
+"""A foreign model with all that touches and weighs: bodies, joints, motors and shapes."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import mujoco
+
+from rotctl.adopting.meshes import boxed
+from rotctl.mechanics.foreign import BONES, compiled, forget_meshes, is_mesh, read_mjcf
+
+_MOTORS = ("actuator", "motor", "general", "position", "velocity")
+_SHAPES = ("inertial", "asset", "mesh")
+_FILES = ("material", "hfield", "fitscale")  # of a geom, what needs more than meshes
+_FEATHER = {"pos": "0 0 0", "mass": "0.001", "diaginertia": "1e-6 1e-6 1e-6"}
+
+
+def solid(path: Path, *, meshes: bool) -> tuple[mujoco.MjModel, list[str]]:
+    """Bodies, joints, motors and shapes with their masses.
+
+    Args:
+        meshes: whether boxes stand for them; without, they are left out.
+
+    Returns:
+        The model, and notes on what was left out.
+
+    Raises:
+        InputError: it is no model with hinges on a free root.
+    """
+    root = read_mjcf(path)
+    notes = boxed(path, root) if meshes else []
+    known = {mesh.get("name", "") for mesh in root.iter("mesh") if "vertex" in mesh.attrib}
+    missing = _keep_shapes(root, known if meshes else set())
+    if missing:
+        notes.append(f"{missing} shapes that are meshes are left out")
+    return compiled(path, root), notes
+
+
+def _keep_shapes(root: ElementTree.Element, known: set[str]) -> int:
+    """Leave out all but bodies, shapes and motors; how many meshes that were.
+
+    Args:
+        known: meshes that stay.
+    """
+    kept = (*BONES, *_MOTORS, *(_SHAPES if known else _SHAPES[:1]))
+    waiting, meshes = [root], 0
+    while waiting:
+        element = waiting.pop()
+        for child in list(element):
+            mesh = child.tag == "geom" and is_mesh(child) and child.get("mesh") not in known
+            meshes += mesh and element.tag == "body"
+            elsewhere = element.tag == "actuator" and "joint" not in child.attrib
+            if child.tag not in kept or mesh or elsewhere:
+                element.remove(child)
+        for name in _FILES if element.tag == "geom" else ():
+            element.attrib.pop(name, None)
+        if element.tag == "compiler":
+            element.attrib = {k: v for k, v in element.attrib.items() if not k.endswith("dir")}
+        if element.tag == "body" and not any(c.tag in ("geom", "inertial") for c in element):
+            ElementTree.SubElement(element, "inertial", _FEATHER)
+        waiting.extend(element)
+    for part in [part for part in root if part.tag == "default" and not known]:
+        forget_meshes(part)
+    return meshes

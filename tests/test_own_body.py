@@ -1,0 +1,106 @@
+"""`character: {kind: mjcf, file: robot.xml}`: somebody's model as a choice of a config."""
+
+import pytest
+import yaml
+from test_adopt import text
+
+from rotctl import listing
+from rotctl.cli import main
+from rotctl.config import load, to_dict
+from rotctl.errors import InputError
+from rotctl.run import run
+from rotctl.scenario import build
+
+INLINE = "character={kind: mjcf, file: robot.xml}"
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """A folder with a model, and one of configs with the same."""
+    characters = tmp_path / "conf/character"
+    characters.mkdir(parents=True)
+    (tmp_path / "conf/rotctl.yaml").touch()
+    for folder in (tmp_path, characters):
+        (folder / "robot.xml").write_text(text())
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(listing.OWN, raising=False)
+    return tmp_path
+
+
+def complaint(*overrides):
+    with pytest.raises(InputError) as caught:
+        load(list(overrides))
+    return str(caught.value)
+
+
+def test_a_log_is_all_that_is_needed(here):
+    config = load([INLINE, "seed=3", "character.strength=2", "duration=0.2"])
+    assert (config.character.name, config.seed, config.character.strength) == ("robot", 3, 2.0)
+    log = run(config, here / "runs").folder / "run.h5"
+    (here / "robot.xml").unlink()
+    assert main(["verify", str(log)]) == 0
+
+
+def test_it_is_the_character_that_inspect_model_writes(here):
+    assert main(["inspect-model", "robot.xml", "--out", "robot.yaml"]) == 0
+    written = yaml.safe_load((here / "robot.yaml").read_text())
+    found = yaml.safe_load(yaml.safe_dump(to_dict(load([INLINE]))["character"]))
+    assert "\nno torque limit in the file for elbow, " in found.pop("description")
+    for body in found["bodies"]:  # of what is usual nothing is written
+        for key in ("parent", "position", "mirror", "joints"):
+            if body[key] in (None, [0.0, 0.0, 0.0], False, []):
+                del body[key]
+        for geom in body["geoms"]:
+            assert geom.pop("colour") is None
+            if geom["end"] is None:
+                del geom["end"]
+    assert found == written
+
+
+def test_a_choice_of_ones_own_names_a_model(here, capsys):
+    (here / "conf/character/mine.yaml").write_text(
+        "{kind: mjcf, file: robot.xml, strength: 3.0, mass: 40.0}"
+    )
+    (here / "robot.xml").unlink()  # the one beside the choice is meant
+    assert main(["show", "character=mine", "character.mass=50"]) == 0
+    shown = yaml.safe_load(capsys.readouterr().out)["character"]
+    assert (shown["strength"], shown["mass"]) == (3.0, 50)
+
+
+def test_a_sweep_over_bodies(here, capsys):
+    (here / "conf/character/mine.yaml").write_text("{kind: mjcf, file: robot.xml}")
+    sweep = ["sweep", "character=mine,adult", "duration=0.1", "--out", "sweeps", "--jobs", "1"]
+    assert main(sweep) == 0
+    assert "2 runs: " in capsys.readouterr().out
+
+
+def test_roles_can_be_told(here):
+    nameless = text(left_thigh="a", left_shin="b", left_foot="c")
+    (here / "robot.xml").write_text(nameless)
+    assert complaint(INLINE).startswith(
+        "robot.xml: no joint for the left hip, such as leftupleg; "
+        "name it with +character.roles.left_hip=NAME; its joints: torso, "
+    )
+    assert build(load([INLINE, "+character.roles.left_hip=a"])).model.mass > 40
+    assert complaint(INLINE, "+character.roles.left_hip=z").startswith(
+        "robot.xml: +character.roles.left_hip=z: no such joint; its joints: torso, "
+    )
+
+
+@pytest.mark.parametrize(
+    ("overrides", "expected"),
+    [
+        (["character={kind: mjcf}"], "character: file: missing, it cannot be left out"),
+        (["character={kind: urdf, file: robot.xml}"], "character: kind=\"urdf\": must be 'mjcf'"),
+        (["character={kind: mjcf, file: none.xml}"], "none.xml: no such file"),
+        ([INLINE, "~character.roles"], "~character.roles: a model's keys are given, not removed"),
+    ],
+)
+def test_what_makes_none_is_told(overrides, expected):
+    assert complaint(*overrides) == expected
+
+
+def test_an_unknown_key_is_told():
+    assert complaint(INLINE, "character.hight=2").startswith(
+        "unknown key 'hight'; valid keys under character: kind, file, roles, meshes, name, height,"
+    )
