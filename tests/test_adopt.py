@@ -342,3 +342,20 @@ def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, file, reason):
     notes = adopt(robot / "robot.xml", "mine").notes
     assert notes[0].endswith(f"{reason}: left out")
     assert notes[1] == "2 shapes that are meshes are left out"
+
+
+def test_what_is_only_looked_at_touches_nothing(tmp_path):
+    """A mesh that collides with nothing, by its class, beside a shape that does; and one alone."""
+    (tmp_path / "foot.stl").write_bytes(stl(BRICK))
+    seen = (
+        '<default><default class="seen"><geom type="mesh" contype="0" conaffinity="0"/></default>'
+        '</default><asset><mesh name="foot" file="foot.stl"/></asset>'
+    )
+    box = '<geom type="box" size="0.1 0.04 0.03" pos="0.05 0 -0.03" mass="1"/>'
+    mesh = '<geom class="seen" mesh="foot" pos="0 0 -0.06" mass="0.5"/>'
+    path, sizes = tmp_path / "robot.xml", []
+    for shapes in (box + mesh, mesh):
+        path.write_text(text().replace(box, shapes).replace("<worldbody>", seen + "<worldbody>"))
+        (foot,) = (b for b in adopt(path, "mine").character["bodies"] if b["name"] == "foot")
+        sizes.append([(g["size"], round(g["end"][0] - g["start"][0], 3)) for g in foot["geoms"]])
+    assert sizes == [[(0.03, pytest.approx(0.14))] * 2, [(0.03, pytest.approx(0.34))] * 2]

@@ -146,7 +146,7 @@ def _character(
     damping = round(damping or share * (height / ADULT_HEIGHT) ** 0.5, 5)
     armature = float(np.median([h.armature for h in hinges]))
     armature = round(armature or 0.01 * share * height / ADULT_HEIGHT, 6)
-    silent = not any(h.damping or h.armature for h in hinges)
+    damped, heavy = (any(getattr(h, it) for h in hinges) for it in ("damping", "armature"))
     for segment in segments.values():
         if segment.side == "right":
             continue
@@ -167,9 +167,9 @@ def _character(
                 "range": numbers([min(hinge.low, -1e-3), max(hinge.high, 1e-3)]),
                 "torque": round(float(hinge.torque or share * _ADULT[group]), 2),
             }
-            if not silent and round(hinge.damping, 5) != damping:
+            if damped and round(hinge.damping, 5) != damping:
                 joint["damping"] = round(hinge.damping, 5)
-            if not silent and round(hinge.armature, 6) != armature:
+            if heavy and round(hinge.armature, 6) != armature:
                 joint["armature"] = round(hinge.armature, 6)
             if hinge.stiffness:
                 joint["spring"] = numbers([hinge.stiffness, hinge.rest])
@@ -182,6 +182,8 @@ def _character(
             f"no torque limit in the file for {', '.join(sorted(made_up))}: as strong as the adult "
             "for its mass and height"
         )
+    if not damped:
+        notes.append(f"no joint damping in the file: {damping:.3g} N m s/rad, as the adult's")
     there = {body["name"] for body in bodies}
     has = {hinge.name for hinge in hinges}
     absent = [joint for joint in JOINTS if joint not in has]

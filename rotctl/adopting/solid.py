@@ -47,7 +47,8 @@ def _keep_shapes(root: ElementTree.Element, known: set[str]) -> int:
         element = waiting.pop()
         for child in list(element):
             mesh = child.tag == "geom" and is_mesh(child) and child.get("mesh") not in known
-            meshes += mesh and element.tag == "body"
+            mesh = mesh and element.tag != "default"
+            meshes += mesh
             elsewhere = element.tag == "actuator" and "joint" not in child.attrib
             if child.tag not in kept or mesh or elsewhere:
                 element.remove(child)
