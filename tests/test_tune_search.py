@@ -204,6 +204,19 @@ def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypat
     assert run(chosen, tmp_path / "runs").summary["behaviour"] == "small_tuned"
 
 
+def test_a_result_brings_what_its_behaviour_brings(whole, tmp_path):
+    """Its ground, its excursion: without them it would be judged elsewhere than it was found."""
+    steep = replace(whole.search, overrides=["behaviour=steep"])  # which builds on incline
+    made = result.choices(replace(whole, search=steep))
+    (tmp_path / "behaviour").mkdir()
+    (tmp_path / "behaviour" / "small_tuned.yaml").write_text(made["behaviour"])
+    with listing.own(tmp_path):
+        chosen = config.load(["behaviour=small_tuned"])
+        assert chosen.terrain == config.load(["behaviour=steep"]).terrain
+        assert config.load(["behaviour=small_tuned", "terrain=flat"]).terrain.name == "flat"
+    assert "defaults" not in yaml.safe_load(made["controller"])
+
+
 def test_the_history_is_a_table_and_a_picture_and_says_how_to_judge(tmp_path, whole):
     found = whole
     written = result.write(found, tmp_path)

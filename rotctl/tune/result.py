@@ -7,7 +7,9 @@ from typing import Any
 import yaml
 
 from rotctl import files
-from rotctl.listing import conf_dir, own_dir
+from rotctl.choosing import SELF
+from rotctl.listing import choices as choices_of
+from rotctl.listing import conf_dir, content, named_file, own_dir
 from rotctl.log import collect
 from rotctl.plain import way
 from rotctl.tune.chart import plot, table
@@ -52,6 +54,9 @@ def choices(result: SearchResult) -> dict[str, str]:
         plain = json.loads(json.dumps(data[group])) | {"name": choice_name(result)}
         if "description" in plain:
             plain["description"] = f"Found by rotctl tune: {result.search.space.title}"
+        brought = _brought(_chosen(result, group), group)
+        if brought:
+            plain = {"defaults": [*({key: name} for key, name in brought.items()), SELF], **plain}
         body = yaml.safe_dump(plain, sort_keys=False, default_flow_style=None, width=100)
         texts[group] = f"{described}\n{body}"
     return texts
@@ -112,6 +117,26 @@ def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str
     copies = [f"  cp {file} {(own_dir() or conf_dir()) / file.parent.name}/" for file in written]
     judged = f"  rotctl sweep {overrides} --out {folder / 'judged'}"
     return "\n".join(["to judge it, on seeds that no search has seen:", *copies, judged])
+
+
+def _chosen(result: SearchResult, group: str) -> str:
+    """The choice of a group that a search started from."""
+    usual = [entry for entry in content(conf_dir() / "config.yaml")["defaults"] if entry != SELF]
+    texts = [*result.search.space.base, *result.search.overrides]
+    named = [text.partition("=")[2] for text in texts if text.startswith(f"{group}=")]
+    known = [name for name in named if name in choices_of(group)]
+    return str(known[-1] if known else next(e[group] for e in usual if group in e))
+
+
+def _brought(name: str, group: str) -> dict[str, str]:
+    """What a choice chooses in other groups, and what it builds on does."""
+    found: dict[str, str] = {}
+    for entry in content(named_file(group, name)).get("defaults", []):
+        if isinstance(entry, dict):
+            found |= entry
+        elif entry != SELF:
+            found |= _brought(entry, group)
+    return found
 
 
 def _groups(result: SearchResult) -> list[str]:
