@@ -16,10 +16,10 @@ from rotctl.rotations import Array
 
 MAX_MESHES = 500
 MAX_BYTES = 30_000_000  # of one file
-MAX_WHOLE = 300_000_000  # of all of them
+MAX_WHOLE = 100_000_000  # of all of them
 _HEADER, _FACET = 84, 50  # bytes of a binary STL, and of each of its triangles
-_NUMBER = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
-_VERTEX = re.compile(rb"^\s*v(?:ertex)?\s+" + b"\\s+".join([_NUMBER.encode()] * 3), re.MULTILINE)
+_NUMBER = rb"([-+]?[0-9.]{1,40}(?:[eE][-+]?[0-9]{1,3})?)"
+_VERTEX = re.compile(rb"^[ \t]*v(?:ertex)?[ \t]+" + b"[ \t]+".join([_NUMBER] * 3), re.MULTILINE)
 _KEPT = ("name", "class", "scale", "refpos", "refquat", "vertex")
 
 
@@ -73,7 +73,8 @@ def vertices(path: Path, content: bytes) -> Array:
         found = facets[:, 12:48].copy().view("<f4").reshape(-1, 3).astype(float)
     else:
         try:
-            found = np.array(_VERTEX.findall(content), dtype=float).reshape(-1, 3)
+            numbers = (float(x) for vertex in _VERTEX.finditer(content) for x in vertex.groups())
+            found = np.fromiter(numbers, float).reshape(-1, 3)
         except ValueError:
             found = np.zeros((0, 3))
     if len(found) < 3 or not np.isfinite(found).all() or np.abs(found).max() > 1e6:
