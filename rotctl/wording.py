@@ -35,9 +35,8 @@ def readable(summary: dict[str, Any]) -> str:
     if summary.get("criteria", "rolling") in ("rolling", "finish"):
         measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
-            f"{number('angular_velocity_mean')} rev/s "
-            f"(commanded {number('angular_velocity_commanded')})",
-            f"  speed        {number('speed_mean')} m/s (commanded {number('speed_commanded')})",
+            f"{number('angular_velocity_mean')} rev/s ({_asked(summary, 'angular_velocity')})",
+            f"  speed        {number('speed_mean')} m/s ({_asked(summary, 'speed')})",
             f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
             f"drift {number('lateral_drift')} m",
             f"  stall        {number('longest_stall')} s at most",
@@ -63,6 +62,15 @@ def readable(summary: dict[str, Any]) -> str:
             f"  real time    x {number('real_time_factor', '.1f')}",
         ]
     )
+
+
+def _asked(summary: dict[str, Any], velocity: str) -> str:
+    """What of a velocity is commanded; see `RollingSettings.commanded`."""
+    key = f"{velocity}_commanded"
+    if key not in summary:
+        return "follows from the pace"
+    value = summary[key]
+    return f"commanded {value:.2f}" if isinstance(value, int | float) else "commanded by a schedule"
 
 
 def described(log: "RunLog") -> str:

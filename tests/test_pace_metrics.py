@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from rotctl.config import load
 from rotctl.metrics.pace import measure, off
+from rotctl.wording import readable
 
 PERIOD = 1.0 / 60.0
 ASKED = {"angular_velocity_commanded": 0.5, "speed_commanded": 1.0}
@@ -56,3 +58,32 @@ def test_what_is_not_there_is_no_number(rows):
     assert np.isnan(list(found.values())).all()
     none = {"angular_velocity_commanded": 0.0, "speed_commanded": 0.0}
     assert np.isnan(measure(log_of(np.arange(600)), (0.0, 0.0), none, 2.0)["rate_error"])
+
+
+@pytest.mark.parametrize(
+    ("overrides", "asked", "said"),
+    [
+        ([], {"angular_velocity_commanded": 0.7}, ("commanded 0.70", "follows from the pace")),
+        (
+            ["behaviour.pace.keep=speed", "behaviour.speed=1.6"],
+            {"speed_commanded": 1.6},
+            ("follows from the pace", "commanded 1.60"),
+        ),
+        (
+            ["behaviour.pace.schedule=[[7, 0.9]]"],
+            {"angular_velocity_commanded": None},
+            ("commanded by a schedule", "follows from the pace"),
+        ),
+    ],
+)
+def test_a_pace_is_told_by_what_it_keeps(overrides, asked, said):
+    commanded = load(["behaviour=forward_roll", *overrides]).behaviour.commanded
+    row = {key: value if value == value else None for key, value in commanded.items()}
+    assert row == asked
+    found = measure(log_of(0.7 * PERIOD * np.arange(600)), (0.7, 1.6), commanded, 2.0)
+    met = [name for name in ("rate_error", "speed_error") if found[name] < 0.01]
+    assert met == [{"angular_velocity": "rate_error", "speed": "speed_error"}[key.removesuffix(
+        "_commanded")] for key, value in asked.items() if value]  # fmt: skip
+    whole = {"success": True, "solver_failures": 0, **row}
+    lines = [line for line in readable(whole).splitlines() if line.endswith(")")]
+    assert [line.partition("(")[2].rstrip(")") for line in lines[:2]] == list(said)

@@ -95,11 +95,19 @@ class RollingSettings:
 
     @property
     def commanded(self) -> dict[str, float]:
-        """What is asked for, as columns of the summary [rev/s, m/s, s]."""
+        """What is asked for, as columns of the summary [rev/s, m/s, s].
+
+        A pace keeps one of the two velocities, so that the other has no column. That of one that
+        a schedule changes is NaN: no number is commanded throughout.
+        """
         asked = {
             "angular_velocity_commanded": self.angular_velocity,
             "speed_commanded": self.speed,
         }
+        if self.pace:
+            rate, speed = asked
+            kept = rate if self.pace.keep == "rate" else speed
+            asked = {kept: math.nan if self.pace.schedule else asked[kept]}
         return asked if self.finish is None else asked | {"finish_commanded": self.finish.after}
 
     def make(

@@ -80,7 +80,8 @@ def judge(
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
     part = rolled(log, commanded["finish_commanded"])
-    roll = rolling.measure(part, criteria.roll, commanded["angular_velocity_commanded"], period)
+    direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
+    roll = rolling.measure(part, criteria.roll, direction, period)
     rest = max(row, steps - round(criteria.stand.rest / period))
     end = _Part(log, slice(rest, None))
     settings = replace(criteria.stand, height=1e-3)  # of what it was at first: a squat

@@ -65,7 +65,7 @@ def judge(
     failures = solver_failures(log)
     asked = dict(commanded)
     if isinstance(criteria, RollingCriteria | FinishCriteria):
-        direction = commanded["angular_velocity_commanded"]
+        direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
             found, reason = finish.judge(log, criteria, commanded, period)
             log = finish.rolled(log, commanded["finish_commanded"])

@@ -19,7 +19,7 @@ COLUMNS = (
 def measure(
     log: Arrays, means: tuple[float, float], commanded: Mapping[str, float], settle: float
 ) -> dict[str, float]:
-    """The columns, the errors as shares of what is commanded; NaN where that is nothing.
+    """The columns, the errors as shares of what is commanded; NaN where no number is.
 
     Args:
         log: arrays by schema path; may have no rows.
@@ -28,7 +28,7 @@ def measure(
         settle: time at the start that is left out of the revolutions [s].
     """
     rate, speed = means
-    wanted = commanded["angular_velocity_commanded"]
+    wanted = commanded.get("angular_velocity_commanded", math.nan)
     time = np.asarray(log["trajectory/time"])
     rows = time >= settle
     turned = in_frame(log, "trajectory/angular_excursion")[rows, 1] / (2 * math.pi)
@@ -39,7 +39,7 @@ def measure(
             each = np.abs(1.0 / (time[rows][last] - time[rows][first]) - abs(wanted)) / abs(wanted)
     return {
         "rate_error": off(rate, wanted),
-        "speed_error": off(speed, commanded["speed_commanded"]),
+        "speed_error": off(speed, commanded.get("speed_commanded", math.nan)),
         "revolution_error": float(np.median(each)),
         "travel_mean": abs(speed / rate) if rate else math.nan,
     }

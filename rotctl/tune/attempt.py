@@ -1,7 +1,7 @@
 """One training run, cut as soon as it is hopeless: the task that the engines carry out."""
 
 from dataclasses import dataclass
-from math import acos, degrees, pi
+from math import acos, degrees, nan, pi
 
 from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
@@ -54,7 +54,7 @@ def attempt(item: Attempt) -> TrialRun:
         drift=found["lateral_drift"],
         heading=found["heading_error_end"],
         success=not judged.reason,
-        columns={name: float(found[name]) for name in item.columns},
+        columns={name: float(found.get(name, nan)) for name in item.columns},
     )
 
 
