@@ -57,6 +57,33 @@ def test_so_is_a_flip_that_ends_on_the_head_or_turns_twice():
     assert "; -360 is possible here" in refusal("behaviour=back_flip", f"{KEY}=-720")
 
 
+@pytest.mark.parametrize(
+    ("behaviour", "target", "way", "instead"),
+    [
+        ("front_flip", -360, "forward", 360),
+        ("back_flip", 360, "backward", -360),
+        ("back_flip", 0, "backward", -360),
+    ],
+)
+def test_a_somersault_turns_the_way_that_it_takes_off(behaviour, target, way, instead):
+    assert refusal(f"behaviour={behaviour}", f"{KEY}={target}") == (
+        f"{KEY}={target}: this take-off goes {way} and can only turn {way}; give {instead}"
+    )
+    build(load([f"behaviour={behaviour}", f"{KEY}={instead}"]))
+
+
+def test_a_reverse_dive_is_none():
+    build(load(["behaviour=dive_forward", f"{KEY}=-540"]))
+
+
+@pytest.mark.parametrize("terrain", ["flat", "stairs_down"])
+@pytest.mark.parametrize("behaviour", ["dive_forward", "dive_backward"])
+def test_a_dive_needs_water(behaviour, terrain):
+    assert refusal(f"behaviour={behaviour}", f"terrain={terrain}") == (
+        "behaviour.stages.until: this behaviour dives, and here is no water; choose terrain=pool"
+    )
+
+
 def test_shapes_that_are_not_there_are_told():
     said = "behaviour.shape=ball: no such shape; valid: tuck"
     assert refusal("behaviour=back_flip", "behaviour.shape=ball").startswith(said)

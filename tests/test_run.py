@@ -198,7 +198,8 @@ def test_every_solver_rolls(solver, form, duration, tmp_path):
     )
     summary = run(config, tmp_path).summary
     turned = summary["revolutions"]
-    short = f"no whole revolution: turned {turned:.2f} rev"
+    ends = f"the run ends at {duration:.2f} s"
+    short = f"{ends}, before a whole revolution: it turned {turned:.2f} rev"
     assert summary["failure_reason"] == ("" if turned >= 1.0 else short)
     assert summary["solver_failures"] == 0
     assert summary["duration"] == pytest.approx(duration)

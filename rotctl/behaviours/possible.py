@@ -37,8 +37,25 @@ def check(
     for whirl in aims.values():
         if isinstance(whirl, Whirl):
             launch, flight = whirl.parts(aims, laws)
+            _check_way(launch, flight, target)
             _check_turn(flight, target)
             _check_momentum(model, axes, target, launch, whirl, flight)
+
+
+def _check_way(launch: Launch, flight: Flight, target: float) -> None:
+    """Raises InputError for a somersault against the way that it takes off.
+
+    From a platform such a turn has the time and the room (a reverse dive); back onto the feet that
+    took off it has not.
+    """
+    if flight.bodies != launch.bodies or launch.forward * target > 0.0 or not launch.forward:
+        return
+    way = "forward" if launch.forward > 0.0 else "backward"
+    turn = copysign(degrees(abs(target)) or 360.0, launch.forward)
+    raise InputError(
+        f"{KEY}={degrees(target):g}: this take-off goes {way} and can only turn {way}; "
+        f"give {turn:g}"
+    )
 
 
 def _check_turn(flight: Flight, target: float) -> None:

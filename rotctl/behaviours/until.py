@@ -9,7 +9,9 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.launch import leaning
 from rotctl.behaviours.scene import Scene
+from rotctl.errors import InputError
 from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
+from rotctl.mechanics.terrain.pool import Basin
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 
@@ -133,14 +135,19 @@ class Lands:
 
 @validated(frozen=True, config=STRICT)
 class Enters:
-    """One of these bodies is under the ground, or what looks like it: water."""
+    """One of these bodies is under water."""
 
     kind: Literal["enters"]
     bodies: tuple[str, ...]
 
     def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
+        """Raises InputError for a body that is not there, and where there is no water."""
         body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+        if not isinstance(model.ground, Basin):
+            raise InputError(
+                "behaviour.stages.until: this behaviour dives, and here is no water; "
+                "choose terrain=pool"
+            )
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""

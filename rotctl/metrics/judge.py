@@ -9,7 +9,17 @@ import mujoco
 import numpy as np
 from pydantic import Field
 
-from rotctl.metrics import appearance, dive, finish, flip, orientation, pace, rolling, standing
+from rotctl.metrics import (
+    appearance,
+    dive,
+    early,
+    finish,
+    flip,
+    orientation,
+    pace,
+    rolling,
+    standing,
+)
 from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.finish import FinishCriteria
@@ -68,16 +78,16 @@ def judge(
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
             found, reason = finish.judge(log, criteria, commanded, period)
-            log = finish.rolled(log, commanded["finish_commanded"])
+            rolling_log = finish.rolled(log, commanded["finish_commanded"])
             settle = criteria.roll.settle
         else:
             rolled = rolling.measure(log, criteria, direction, period)
             found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
             del found["stalled_at"]  # of people's interest in a reason alone
-            settle = criteria.settle
-        found |= vars(appearance.measure(log, mj, direction, period))
+            rolling_log, settle = log, criteria.settle
+        found |= vars(appearance.measure(rolling_log, mj, direction, period))
         means = found["angular_velocity_mean"], found["speed_mean"]
-        found |= pace.measure(log, means, commanded, settle)
+        found |= pace.measure(rolling_log, means, commanded, settle)
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
         found, reason = dict(vars(stood)), standing.failure(stood, criteria, steps * period)
@@ -88,6 +98,8 @@ def judge(
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
+    if reason and steps:
+        reason = early.too_short(log, criteria, commanded, found, period) or reason
     if steps * period < wanted - 1e-6:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:

@@ -74,13 +74,13 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
         lean_end=float(lean[last].max()),
         sway=float(sway.max()),
         speed_end=float(speed[last].max()),
-        other_contact=float(_on_others(log, criteria.feet).sum() * period),
+        other_contact=float(on_others(log, criteria.feet).sum() * period),
         stature_least=float(height.min() / height[0]),
         stature_end=float(height[last].min() / height[0]),
     )
 
 
-def _on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
+def on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
     """(steps,) whether anything but these bodies touches the ground."""
     names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/body"]).tolist()]
     allowed = [-1, *(i for i, name in enumerate(names) if name in feet)]

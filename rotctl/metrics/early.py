@@ -1,0 +1,103 @@
+"""A run that ends before it could do what it is asked: that is the reason, not what is missing."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rotctl.metrics import finish
+from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.dive import DiveCriteria, entry
+from rotctl.metrics.finish import FinishCriteria
+from rotctl.metrics.flip import FlipCriteria, longest_flight
+from rotctl.metrics.orientation import OrientationCriteria
+from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.standing import StandingCriteria, on_others
+
+if TYPE_CHECKING:
+    from rotctl.metrics.judge import Criteria
+
+
+def too_short(
+    log: Arrays,
+    criteria: "Criteria",
+    commanded: Mapping[str, float],
+    columns: Mapping[str, float],
+    period: float,
+) -> str:
+    """What a run had still to do when it ended; empty where it had the time for all of it.
+
+    Args:
+        log: arrays by schema path, with a row at least, of a run that is no success.
+        commanded: columns that tell what was asked for.
+        columns: what was measured of it.
+        period: of the control [s].
+    """
+    lasted = len(floats(log, "trajectory/time")) * period
+    missing = _missing(log, criteria, commanded, columns, lasted, period)
+    return f"the run ends at {lasted:.2f} s, {missing}" if missing else ""
+
+
+def _missing(
+    log: Arrays,
+    criteria: "Criteria",
+    commanded: Mapping[str, float],
+    columns: Mapping[str, float],
+    lasted: float,
+    period: float,
+) -> str:
+    if isinstance(criteria, RollingCriteria):
+        turned = columns["revolutions"]
+        short = 0.0 <= turned < 1.0 and lasted < criteria.stall_time
+        return f"before a whole revolution: it turned {turned:.2f} rev" if short else ""
+    if isinstance(criteria, OrientationCriteria):
+        return _before_the_turn(criteria, columns, lasted)
+    if isinstance(criteria, FinishCriteria):
+        told, begins = commanded["finish_commanded"], finish.begins(log) * period
+        if lasted <= told:
+            return f"before it is told to end, at {told:g} s"
+        if begins < lasted:
+            return _resting("it began to stand up", begins, lasted, criteria.stand.rest)
+        waits = lasted - told  # for a squat, of which there is one in a revolution
+        short = waits < criteria.roll.revolution_time
+        return f"{waits:.2f} s after it was told to end: it still rolls" if short else ""
+    if isinstance(criteria, StandingCriteria):
+        return "" if on_others(log, criteria.feet).any() else _standing(log, criteria.rest, period)
+    if isinstance(criteria, DiveCriteria):
+        return "" if entry(log) is not None else _before_the_end_of_a_flight(log)
+    if not isinstance(criteria, FlipCriteria) or on_others(log, criteria.landing.feet).any():
+        return ""
+    _, landed = longest_flight(log)
+    resting = _resting("it landed", landed * period, lasted, criteria.landing.rest)
+    return _before_the_end_of_a_flight(log) or resting
+
+
+def _before_the_turn(
+    criteria: OrientationCriteria, columns: Mapping[str, float], lasted: float
+) -> str:
+    here = abs(columns["turned"] - columns["target_excursion"]) < criteria.error
+    if here:
+        return _resting("it was there", columns["arrival"], lasted, criteria.rest)
+    so_far = f"turned by {columns['turned']:.0f} of {columns['target_excursion']:.0f} deg"
+    return f"{so_far}: it has {criteria.within:g} s" if lasted < criteria.within else ""
+
+
+def _standing(log: Arrays, rest: float, period: float) -> str:
+    first = int(np.argmax(np.asarray(log["contacts/count"]) > 0))
+    lasted = len(np.asarray(log["contacts/count"])) * period
+    what = "it landed" if first else "it began"
+    return _in_the_air(log) or _resting(what, first * period, lasted, rest)
+
+
+def _before_the_end_of_a_flight(log: Arrays) -> str:
+    first, _ = longest_flight(log)
+    return _in_the_air(log) or ("" if first else "before it takes off")
+
+
+def _in_the_air(log: Arrays) -> str:
+    return "" if np.asarray(log["contacts/count"])[-1] else "in the air"
+
+
+def _resting(what: str, since: float, lasted: float, rest: float) -> str:
+    rested = lasted - since
+    return f"{rested:.2f} s after {what}: it is to rest for {rest:g} s" if rested < rest else ""

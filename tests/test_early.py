@@ -1,0 +1,61 @@
+"""Runs that are too short for what they are asked: the reason is that they end, and where."""
+
+import re
+
+import pytest
+
+from rotctl.config import load
+from rotctl.run import make
+
+STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "reason"),
+    [
+        (["duration=0.5"], r"0.50 s, before a whole revolution: it turned 0.\d\d rev"),
+        (["behaviour=back_flip", "duration=0.3"], "0.30 s, before it takes off"),
+        (["behaviour=dive_forward", "duration=0.3"], "0.30 s, before it takes off"),
+        (["behaviour=dive_forward", "duration=2.4"], "2.40 s, in the air"),
+        (
+            ["behaviour=turn_over", "duration=0.5"],
+            r"0.50 s, turned by \d+ of 180 deg: it has 7 s",
+        ),
+        (
+            ["behaviour=stand", "duration=0.5"],
+            "0.50 s, 0.50 s after it began: it is to rest for 1 s",
+        ),
+        (
+            [*STANDS, "duration=1.2"],
+            "1.20 s, 0.20 s after it was told to end: it still rolls",
+        ),
+        ([*STANDS, "duration=0.5"], "0.50 s, before it is told to end, at 1 s"),
+    ],
+)
+def test_the_end_of_a_short_run_is_its_reason(overrides, reason):
+    found = make(load([*overrides, "seed=2000"])).summary["failure_reason"]
+    assert re.fullmatch(f"the run ends at {reason}", found), found
+
+
+@pytest.mark.parametrize(
+    ("duration", "begins"),
+    [(2.3, "in the air"), (3.0, r"0.\d\d s after it landed: it is to rest for 2 s"), (6.0, "")],
+)
+def test_a_flip_goes_through_all_of_them(duration, begins):
+    config = load(["behaviour=front_flip", "seed=2000", f"duration={duration}"])
+    found = make(config).summary["failure_reason"]
+    wanted = f"the run ends at {duration:.2f} s, {begins}" if begins else ""
+    assert re.fullmatch(wanted, found), found
+
+
+@pytest.mark.parametrize(
+    ("overrides", "reason"),
+    [
+        (["behaviour=stand", "disturbance=push", "disturbance.impulse=300"], "touched the ground"),
+        (["behaviour=forward_roll_2", "behaviour.reference.clip=forward_roll"], "stalled for"),
+    ],
+)
+def test_a_run_that_had_the_time_fails_for_its_own_reason(overrides, reason):
+    found = make(load([*overrides, "seed=2000", "duration=4"])).summary["failure_reason"]
+    assert found.startswith(reason)
+    assert "the run ends" not in found
