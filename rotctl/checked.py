@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from rotctl import documents, files
 from rotctl.errors import InputError
+from rotctl.meant import meant
 from rotctl.plain import NOTHING, dotted, member
 
 T = TypeVar("T")
@@ -90,7 +91,10 @@ adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)  # of a type, ma
 
 def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
     """One line on the first thing that pydantic found wrong."""
-    first = errors[0]
+    place_of = errors[0]["loc"][:-1]
+    # A key that is not known says more than the one that is missing for it.
+    beside = [e for e in errors if e["loc"][:-1] == place_of]
+    first = next((e for e in beside if e["type"] == "unexpected_keyword_argument"), errors[0])
     kind, way, limits = first["type"], first["loc"], first.get("ctx", {})
     # Of the way, what is there in the data: pydantic adds the types of a union.
     place: list[int | str] = []
@@ -111,7 +115,8 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
         # Settings that differ in kind, and a key that says which.
         key = limits["discriminator"].strip("'")
         name, valid = dotted([*place, key]), limits["expected_tags"]
-        return f"{name}={brief(limits['tag'])}: no such {key}; valid: {valid}"
+        near = meant(limits["tag"], valid.replace("'", "").split(", "))
+        return f"{name}={brief(limits['tag'])}: no such {key}; {near}valid: {valid}"
     if kind in ("missing", "union_tag_not_found"):
         absent = way[-1] if kind == "missing" else limits["discriminator"].strip("'")
         return f"{dotted([*place, absent])}: {_WORDS[kind]}"
@@ -128,7 +133,8 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
 def unknown_key(key: str, where: str, valid: Sequence[str]) -> str:
     """One line on a key that settings do not have."""
     under = f" under {where}" if where else ""
-    return f"unknown key {clip(key)!r}; valid keys{under}: {', '.join(valid)}"
+    near = meant(key.rpartition(".")[2], valid)
+    return f"unknown key {clip(key)!r}; {near}valid keys{under}: {', '.join(valid)}"
 
 
 def _inner(shape: Any, part: int | str) -> Any:

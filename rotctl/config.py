@@ -25,7 +25,7 @@ from rotctl.choosing import Assignment, simple
 from rotctl.control import ControllerSettings
 from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
-from rotctl.listing import choices, conf_dir, folders, own_dir, require_plain
+from rotctl.listing import choices, conf_dir, folders, is_own, named_file, own_dir, require_plain
 from rotctl.log import RunLog
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.disturbance import DisturbanceSettings
@@ -79,7 +79,30 @@ def load(overrides: list[str]) -> Config:
     Raises:
         InputError: one line that names the bad value and the valid choices or range.
     """
-    return check(composed(overrides))
+    data = composed(overrides)
+    try:
+        return check(data)
+    except InputError as error:
+        raise InputError(f"{_own_file(overrides, str(error))}{error}") from None
+
+
+def _own_file(overrides: list[str], complaint: str) -> str:
+    """The file of the user's that is at fault, for a message to begin with; else nothing.
+
+    It is at fault if the choices among the overrides are wrong already, by themselves.
+    """
+    chosen = [one for one in map(simple, overrides) if one and choices(one.key)]
+    mine = {one.key: named_file(one.key, one.value) for one in chosen}
+    mine = {group: path for group, path in mine.items() if is_own(path)}
+    if not mine:
+        return ""
+    try:
+        check(composed([f"{one.key}={one.value}" for one in chosen]))
+    except InputError as error:
+        if str(error) == complaint:
+            named = [path for group, path in mine.items() if f"{group}." in complaint]
+            return f"{next(iter(named or mine.values()))}: "
+    return ""
 
 
 def recorded(log: RunLog) -> Config:

@@ -14,6 +14,7 @@ from typing import Any
 
 from rotctl import documents, files, plain
 from rotctl.errors import InputError
+from rotctl.meant import meant
 
 OWN = "ROTCTL_CONFIG_DIR"
 EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl
@@ -112,6 +113,11 @@ def named_file(folder: str, name: str) -> Path:
     return found
 
 
+def is_word_of_yaml(name: str) -> bool:
+    """Whether YAML or Hydra takes a name for something else, so that nobody can choose it."""
+    return name.lower() in ("true", "false", "yes", "no", "on", "off", "null", "inf", "nan")
+
+
 def folders() -> tuple[Path, ...]:
     """Where configs lie: rotctl's, then the user's."""
     return tuple(filter(None, (conf_dir(), own_dir())))
@@ -127,7 +133,7 @@ def choices(group: str) -> list[str]:
     """The choices of a config group, sorted; empty if there is no such group."""
     if not group.isidentifier() or group in _NO_GROUPS or not (conf_dir() / group).is_dir():
         return []
-    return sorted(named_files(group))
+    return sorted(name for name in named_files(group) if not is_word_of_yaml(name))
 
 
 def groups() -> dict[str, dict[str, str]]:
@@ -191,8 +197,13 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
         named = entry if isinstance(entry, dict) else {path.parent.name: entry}
         for key, name in named.items() if entry != "_self_" else ():
             match = _DEFAULT.fullmatch(key)
-            if not match or name not in choices(match[1]):
-                raise InputError(f"{path}: defaults: {key}: {name}: no such choice of a group")
+            valid = choices(match[1]) if match else []
+            if not match or name not in valid:
+                hint = meant(name, valid)
+                raise InputError(
+                    f"{path}: defaults: {key}: {name}: no such choice of a group{hint and '; '}"
+                    f"{hint.rstrip()}"
+                )
             pairs.append((match[1], name))
     return pairs
 
@@ -200,6 +211,8 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
 def _described(path: Path) -> str:
     try:
         named_file(path.parent.name, path.stem)  # of which there must be one
+        if is_word_of_yaml(path.stem):
+            raise InputError(f"YAML takes {path.stem} for something else; give it another name")
         description = content(path).get("description")
         text = files.text(path, documents.LARGEST, linked=True)
         return " ".join(str(description or _first_comment(text)).split())

@@ -15,6 +15,7 @@ from rotctl.checked import brief, clip
 from rotctl.choosing import MISSING, Assignment
 from rotctl.errors import InputError
 from rotctl.listing import choices
+from rotctl.meant import instead
 
 LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte
 LONGEST_KEY = 200
@@ -74,7 +75,7 @@ def single(override: str) -> Override:
         raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
     valid = choices(key)
     if valid and not isinstance(value, dict) and value not in valid:
-        raise InputError(f"{key}={brief(value)}: no such choice; valid: {', '.join(valid)}")
+        raise InputError(f"{key}={brief(value)}: no such choice; {instead(value, valid)}")
     return found
 
 

@@ -5,7 +5,16 @@ from pathlib import Path
 
 from rotctl import __version__, documents, files
 from rotctl.errors import InputError
-from rotctl.listing import MARK, groups, is_shipped, named_file, named_files, own_dir
+from rotctl.listing import (
+    MARK,
+    groups,
+    is_shipped,
+    is_word_of_yaml,
+    named_file,
+    named_files,
+    own_dir,
+)
+from rotctl.meant import instead
 
 MARKED = """\
 # Your own configs for rotctl: behaviour/, character/, terrain/, start/, ..., clips in motion/,
@@ -32,12 +41,14 @@ def make(kind: str, name: str, source: str) -> Path:
         InputError: there is no such choice, or one of that name already; nothing is written.
     """
     if kind not in kinds():
-        raise InputError(f"{kind}: no such kind of file; valid: {', '.join(kinds())}")
+        raise InputError(f"{kind}: no such kind of file; {instead(kind, kinds())}")
     if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
         raise InputError(f"{name}: must be letters, digits and _, a letter first")
+    if is_word_of_yaml(name):
+        raise InputError(f"{name}: YAML takes it for something else; give another name")
     there = named_files(kind)
     if source not in there:
-        raise InputError(f"--from={source}: no such {kind}; valid: {', '.join(there)}")
+        raise InputError(f"--from={source}: no such {kind}; {instead(source, there)}")
     if name in there:
         raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
     text = files.text(named_file(kind, source), documents.LARGEST, linked=True)

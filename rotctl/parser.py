@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 from rotctl import __version__
 from rotctl.commands import clips, folders, logs, runs, studies
 from rotctl.errors import bounded
+from rotctl.meant import instead, meant
 from rotctl.wording import one_line
 
 EPILOG = """\
@@ -61,6 +62,16 @@ class _Parser(argparse.ArgumentParser):
     def __init__(self, **settings: Any) -> None:
         super().__init__(allow_abbrev=False, **settings)
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """One word for what is not valid, here and in configs."""
+        if action.choices is not None and value not in action.choices:
+            valid = instead(value, map(str, action.choices))
+            raise argparse.ArgumentError(action, f"{value!r}: no such choice; {valid}")
+
+    def options(self) -> list[str]:
+        """The options that there are."""
+        return [name for action in self._actions for name in action.option_strings]
+
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {bounded(one_line(message))}; see {self.prog} --help\n")
 
@@ -71,7 +82,10 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     takes_more = "overrides" in arguments
     unknown = [text for text in others if text.startswith("-") or not takes_more]
     if unknown:
-        arguments.parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+        command = arguments.parser
+        near = [meant(text.partition("=")[0], command.options()) for text in unknown]
+        hint = next((f" ({text.rstrip()})" for text in near if text), "")
+        command.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     if takes_more:
         arguments.overrides = [*arguments.overrides, *others]
     return arguments

@@ -32,7 +32,7 @@ from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
 
-DESCRIPTIVE = ("description", "source", "colour")
+DESCRIPTIVE = ("description", "source", "colour", "found_for")
 
 
 @dataclass(frozen=True)

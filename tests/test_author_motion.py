@@ -182,7 +182,8 @@ def test_bad_keys_are_one_line(tmp_path, changes, complaint):
     ("pose", "complaint"),
     [
         ({"knee": 3.0}, "the key at turn 0.7 has knee=3, valid: -0.02 to 2.7"),
-        ({"kne": 1.0}, "the key at turn 0.7 names the unknown joint 'kne'; valid: ankle_x, "),
+        ({"kne": 1.0}, "the key at turn 0.7 names the unknown joint 'kne'; did you mean "
+         "knee? valid: ankle_x, "),
     ],
 )  # fmt: skip
 def test_keys_that_the_character_cannot_take(tmp_path, pose, complaint):

@@ -148,8 +148,10 @@ def test_overrides_and_options_may_be_mixed(cli, made):
         ([*RUN, "seed"], "rotctl: override 'seed' has no '='; write key=value, such as seed=3"),
         ([*RUN, "--out", ""], "rotctl run: argument --out: the name is empty; "
          "see rotctl run --help"),
-        ([*RUN, "--frce"], "rotctl run: unrecognized arguments: --frce; see rotctl run --help"),
-        ([*RUN, "--forc"], "rotctl run: unrecognized arguments: --forc; see rotctl run --help"),
+        ([*RUN, "--frce"], "rotctl run: unrecognized arguments: --frce (did you mean "
+         "--force?); see rotctl run --help"),
+        ([*RUN, "--forc"], "rotctl run: unrecognized arguments: --forc (did you mean "
+         "--force?); see rotctl run --help"),
         (["list", "x"], "rotctl list: unrecognized arguments: x; see rotctl list --help"),
         ([], "rotctl: the following arguments are required: COMMAND; see rotctl --help"),
         (["inspect"], "rotctl inspect: the following arguments are required: RUN.h5; "
@@ -165,10 +167,11 @@ def test_overrides_and_options_may_be_mixed(cli, made):
          "rotctl: x.txt: valid endings: .png"),
         (["inspect", "nothing.h5"], "rotctl: nothing.h5: no such file"),
         (["inspect", "x" * 300], f"rotctl: {'x' * 300}: no such file"),
-        (["inspect", "."], "rotctl: .: is a folder; name the log in it, such as run.h5"),
+        (["inspect", "."], "rotctl: .: is a folder without run.h5; "
+         "name a run, its folder or the log in it; rotctl ls . lists them"),
         (["render", "nothing.h5", "--filmstrip", "x.png"], "rotctl: nothing.h5: no such file"),
-        (["render", ".", "--filmstrip", "x.png"], "rotctl: .: is a folder; name the log in it, "
-         "such as run.h5"),
+        (["render", ".", "--filmstrip", "x.png"], "rotctl: .: is a folder without run.h5; "
+         "name a run, its folder or the log in it; rotctl ls . lists them"),
     ],
 )  # fmt: skip
 def test_bad_input_is_one_line_and_exit_code_2(cli, tmp_path, monkeypatch, arguments, message):

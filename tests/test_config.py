@@ -82,15 +82,18 @@ def test_a_key_that_may_be_missing_can_be_removed():
     ("override", "message"),
     [
         # Keys.
-        ("sed=1", f"unknown key 'sed'; valid keys: {GROUPS}"),
+        ("sed=1", f"unknown key 'sed'; did you mean seed? valid keys: {GROUPS}"),
         ("+x=1", f"unknown key 'x'; valid keys: {GROUPS}"),
         ("++x.y=1", f"unknown key 'x'; valid keys: {GROUPS}"),
         ("~x", f"unknown key 'x'; valid keys: {GROUPS}"),
-        ("controllr=rolling", f"unknown key 'controllr'; valid keys: {GROUPS}"),
-        ("behaviour@x=forward_roll_1", f"unknown key 'behaviour@x'; valid keys: {GROUPS}"),
+        ("controllr=rolling", "unknown key 'controllr'; did you mean controller? "
+         f"valid keys: {GROUPS}"),
+        ("behaviour@x=forward_roll_1", "unknown key 'behaviour@x'; did you mean behaviour? "
+         f"valid keys: {GROUPS}"),
         (
             "controller.pose.dampin=1",
-            "unknown key 'controller.pose.dampin'; valid keys under controller.pose: "
+            "unknown key 'controller.pose.dampin'; did you mean damping? "
+            "valid keys under controller.pose: "
             "stiffness, damping, horizon, weight, blend, explicit",
         ),
         (
@@ -326,13 +329,17 @@ def test_a_config_does_not_change():
 def test_plain_data_is_checked_the_same_way(plain):
     data = copy.deepcopy(plain)
     data["physics"]["substep"] = 1
-    with pytest.raises(InputError, match=r"^unknown key 'physics\.substep'; valid keys under "):
+    with pytest.raises(
+        InputError,
+        match=r"^unknown key 'physics\.substep'; did you mean substeps\? valid keys under ",
+    ):
         check(data)
     data["character"]["bodies"][0]["geoms"][0]["sizes"] = data["physics"].pop("substep")
     with pytest.raises(
         InputError,
-        match=r"^unknown key 'character\.bodies\[0\]\.geoms\[0\]\.sizes'; valid keys under "
-        r"character\.bodies\[0\]\.geoms\[0\]: name, size, start, mass, end, colour$",
+        match=r"^unknown key 'character\.bodies\[0\]\.geoms\[0\]\.sizes'; did you mean size\? "
+        r"valid keys under character\.bodies\[0\]\.geoms\[0\]: "
+        r"name, size, start, mass, end, colour$",
     ):
         check(data)
 

@@ -131,7 +131,7 @@ def test_what_is_wrong_is_said(overrides, message):
     [
         ("title: x", ": source: missing, it cannot be left out"),
         ("{title: x, source: y, matrix: [], seeds: '1', claims: [], tittle: z}",
-         ": unknown key 'tittle'; valid keys: "
+         ": unknown key 'tittle'; did you mean title? valid keys: "
          "title, source, matrix, seeds, claims, deviations, limitations"),
         ("{title: [1", ":2: is no YAML: while parsing a flow sequence, did not find expected ',' "
          "or ']'"),

@@ -134,7 +134,7 @@ def test_a_run_that_broke_down_is_drawn_until_there(log, picture, tmp_path):
     broken = changed(log, tmp_path, {"trajectory/qpos": states})
     filmstrip(broken, picture, frames=2)
     last = log["trajectory/time"][18]
-    with pytest.raises(InputError, match=f"^end is 0.45 s, valid: 0 to {last:g} s$"):
+    with pytest.raises(InputError, match=rf"^end \(--to\) is 0.45 s, valid: 0 to {last:g} s$"):
         filmstrip(broken, picture, end=0.45)
 
 
@@ -161,11 +161,11 @@ def test_by_default_two_turns_after_settling_are_shown_or_the_whole_run():
         ({"frames": 201}, "frames is 201, valid: 1 to 200"),
         ({"columns": 0}, "columns is 0, valid: 1 to 12, the number of frames"),
         ({"frames": 3, "columns": 4}, "columns is 4, valid: 1 to 3, the number of frames"),
-        ({"start": -1.0}, "start is -1 s, valid: 0 to 0.483333 s"),
-        ({"end": 0.6}, "end is 0.6 s, valid: 0 to 0.483333 s"),
-        ({"start": float("nan")}, "start is nan s, valid: 0 to 0.483333 s"),
-        ({"start": 0.3, "end": 0.3}, "start is 0.3 s, valid: less than end = 0.3 s"),
-        ({"start": 0.3, "end": 0.1}, "start is 0.3 s, valid: less than end = 0.1 s"),
+        ({"start": -1.0}, "start (--from) is -1 s, valid: 0 to 0.483333 s"),
+        ({"end": 0.6}, "end (--to) is 0.6 s, valid: 0 to 0.483333 s"),
+        ({"start": float("nan")}, "start (--from) is nan s, valid: 0 to 0.483333 s"),
+        ({"start": 0.3, "end": 0.3}, "start (--from) is 0.3 s, valid: less than end = 0.3 s"),
+        ({"start": 0.3, "end": 0.1}, "start (--from) is 0.3 s, valid: less than end = 0.1 s"),
     ],
 )
 def test_bad_arguments_are_named_with_their_range(log, tmp_path, arguments, message):

@@ -14,6 +14,7 @@ from rotctl.cli import main
 from rotctl.config import load
 from rotctl.listing import conf_dir
 from rotctl.motion import load_clip
+from rotctl.motion.flight import ADULT_LEG, flights
 from rotctl.motion.importing import import_motion
 from rotctl.motion.preview import motion_of
 from rotctl.motion.reading import read_capture
@@ -164,6 +165,20 @@ def test_what_flies_must_fall(tmp_path, cli, clock, warned):
     assert ("warning: the flight" in error) == warned
     if warned:
         assert f"the file's clock runs {clock:.2f} times as fast" in error
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "found"), [(-0.3, 1.1, 1), (0.3, 1.1, 0), (-0.3, 0.5, 0)]
+)
+def test_a_flight_takes_off_and_lands(first, last, found):
+    """What a capture begins or ends with hangs in the air, as rolls in poor captures do."""
+    times = np.arange(first, last, 1 / 60)
+    positions = np.repeat(
+        in_order("forward_roll", turns=1.0, frames=2)[0][None], len(times), axis=0
+    )
+    flying = np.clip(times, 0.0, 0.8)
+    positions[:, 2] += 9.81 * flying * (0.8 - flying) / 2
+    assert len(flights(adult(), times, positions, ADULT_LEG)) == found
 
 
 def _centre(position):

@@ -40,7 +40,8 @@ def test_an_unknown_name_lists_the_valid_ones(path, ask):
     with pytest.raises(LogError) as caught:
         ask(RunLog.open(path), "trajectory/qpso")
     assert str(caught.value) == (
-        f"{path}: no dataset 'trajectory/qpso'; valid names: {', '.join(SCHEMA)}"
+        f"{path}: no dataset 'trajectory/qpso'; did you mean trajectory/qpos? "
+        f"valid names: {', '.join(SCHEMA)}"
     )
 
 

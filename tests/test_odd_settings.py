@@ -56,7 +56,7 @@ def complaint(chosen, changes):
          "behaviour: the aim lunge is for a task 'spin' that captures"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
         (STAND, {"criteria.feet": ["foot"]},
-         f"criteria.feet names the unknown body 'foot'; bodies: {BODIES}"),
+         f"criteria.feet names the unknown body 'foot'; did you mean foot_r? bodies: {BODIES}"),
         (PUSHED, {"disturbance.duration": 1e-300},
          "disturbance.duration=1e-300: must be greater than or equal to 0.001"),
         (PUSHED, {"disturbance.time": [-1.0, 1.0]},

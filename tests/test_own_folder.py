@@ -124,6 +124,14 @@ def test_a_wrong_file_breaks_no_list(here, cli, text):
     [
         (("house", "a", "b"), "house: no such kind of file; valid: behaviour, "),
         (("start", "../a", "rest"), "../a: must be letters, digits and _, a letter first"),
+        (("start", "1e3", "rest"), "1e3: must be letters, digits and _, a letter first"),
+        *(
+            (
+                ("start", word, "rest"),
+                f"{word}: YAML takes it for something else; give another name",
+            )
+            for word in ("true", "null", "No", "off", "inf")
+        ),
         (("start", "a", "nope"), "--from=nope: no such start; valid: falling, "),
         (("start", "still", "rest"), "still: there is a start of that name: "),
     ],
@@ -216,3 +224,43 @@ def test_sweeps_are_compared(here, cli):
     assert said.splitlines()[1].split() == ["controller.pose.weight", "0.6", "0.7"]
     assert "seed" not in said.partition("figures")[0]
     assert "torque_p99_fraction" in said.partition("figures")[2]
+
+
+KEYS = (
+    "name, kind, roll_about, angular_velocity, speed, heading, align_with_slope, poses, reference"
+)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [("run",), ("run", "seed=2", "behaviour.speed=1.0"), ("sweep", "seed=1,2", "--out=x")],
+)
+def test_a_wrong_key_in_a_file_of_ones_own_is_told_with_the_file(here, cli, command):
+    cli("new", "behaviour", "mine", "--from", "forward_roll_1")
+    path = here / "conf" / "behaviour" / "mine.yaml"
+    path.write_text(path.read_text() + "sped: 1.0\n")
+    code, _, error = cli(*command, "behaviour=mine")
+    assert code == 2
+    assert error == (
+        f"rotctl: {path}: unknown key 'behaviour.sped'; did you mean speed? "
+        f"valid keys under behaviour: {KEYS}, angular_momentum, pace, finish, source, description\n"
+    )
+    path.write_text(path.read_text().replace("sped: 1.0\n", ""))  # an override is no fault of it
+    assert cli("show", "behaviour=mine", "behaviour.sped=1")[2].startswith("rotctl: unknown key")
+
+
+def test_a_wrong_key_says_more_than_the_one_that_is_missing_for_it(here, cli):
+    cli("new", "behaviour", "mine", "--from", "back_flip")
+    path = here / "conf" / "behaviour" / "mine.yaml"
+    path.write_text(path.read_text().replace("gain: 1.148 ", "gian: 1.148 "))
+    place = "behaviour.stages[0].tasks.balance.aim"
+    assert cli("run", "behaviour=mine")[2].startswith(
+        f"rotctl: {path}: unknown key '{place}.gian'; did you mean gain? valid keys under {place}: "
+    )
+
+
+def test_a_file_that_nobody_can_choose_is_told(here, cli):
+    cli("new", "start", "mine", "--from", "rest")
+    (here / "conf" / "start" / "mine.yaml").rename(here / "conf" / "start" / "true.yaml")
+    assert "cannot be used: YAML takes true for something else" in cli("list")[1]
+    assert "true" not in cli("show", "start=true")[2].partition("valid: ")[2]

@@ -181,12 +181,12 @@ def test_numbers_that_are_too_large_are_gaps(log, tmp_path, name):
     [
         ("plot.jpg", {}, "{out}: valid endings: .png, .svg, .pdf"),
         ("plot", {}, "{out}: valid endings: .png, .svg, .pdf"),
-        ("plot.png", {"start": -1.0}, "start is -1 s, valid: 0 to 0.983333 s"),
-        ("plot.png", {"end": 2.0}, "end is 2 s, valid: 0 to 0.983333 s"),
+        ("plot.png", {"start": -1.0}, "start (--from) is -1 s, valid: 0 to 0.983333 s"),
+        ("plot.png", {"end": 2.0}, "end (--to) is 2 s, valid: 0 to 0.983333 s"),
         (
             "plot.png",
             {"start": 0.5, "end": 0.5},
-            "start is 0.5 s, valid: less than end = 0.5 s",
+            "start (--from) is 0.5 s, valid: less than end = 0.5 s",
         ),
         ("nowhere/plot.svg", {}, "cannot write {out}: No such file or directory"),
     ],

@@ -54,7 +54,8 @@ def test_unknown_joint(world, key):
     with pytest.raises(InputError) as error:
         make_pose_pair(world.model, Poses(poses["a"], poses["b"]))
     assert str(error.value) == (
-        f"behaviour.poses.{key} names the unknown joint 'kne'; valid: ankle_x, ankle_y, chest_x, "
+        f"behaviour.poses.{key} names the unknown joint 'kne'; did you mean knee? "
+        "valid: ankle_x, ankle_y, chest_x, "
         "chest_y, chest_z, elbow, hip_x, hip_y, hip_z, knee, neck_x, neck_y, neck_z, shoulder_x, "
         "shoulder_y, shoulder_z, waist_x, waist_y, waist_z, limb joints also with _l or _r"
     )

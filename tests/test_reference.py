@@ -85,7 +85,8 @@ def test_an_offset_of_no_joint(world):
     with pytest.raises(InputError) as error:
         make_reference_pair(world.model, clip(), following(kne=[0.1]))
     assert str(error.value) == (
-        "behaviour.reference.offsets names the unknown joint 'kne'; valid: ankle_x, ankle_y, "
+        "behaviour.reference.offsets names the unknown joint 'kne'; did you mean knee? "
+        "valid: ankle_x, ankle_y, "
         "chest_x, chest_y, chest_z, elbow, hip_x, hip_y, hip_z, knee, neck_x, neck_y, neck_z, "
         "shoulder_x, shoulder_y, shoulder_z, waist_x, waist_y, waist_z, limb joints also with "
         "_l or _r"
@@ -109,7 +110,8 @@ def test_unknown_joint(world):
     with pytest.raises(InputError) as error:
         clip(kne=WAVE).poses(world.model)
     assert str(error.value) == (
-        "clip 'wave' names the unknown joint 'kne'; valid: ankle_x, ankle_y, "
+        "clip 'wave' names the unknown joint 'kne'; did you mean knee? "
+        "valid: ankle_x, ankle_y, "
         "chest_x, chest_y, chest_z, elbow, hip_x, hip_y, hip_z, knee, neck_x, neck_y, neck_z, "
         "shoulder_x, shoulder_y, shoulder_z, waist_x, waist_y, waist_z, limb joints also with "
         "_l or _r"

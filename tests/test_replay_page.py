@@ -226,7 +226,11 @@ def test_the_command_writes_beside_the_log_and_complains_in_one_line(log, capsys
     for arguments, said in (
         (["nothing.h5"], "rotctl: nothing.h5: no such file\n"),
         ([str(log.path), "--compare", "nothing.h5"], "rotctl: nothing.h5: no such file\n"),
-        (["."], "rotctl: .: is a folder; name the log in it, such as run.h5\n"),
+        (
+            ["."],
+            "rotctl: .: is a folder without run.h5; name a run, "
+            "its folder or the log in it; rotctl ls . lists them\n",
+        ),
     ):
         assert main(["replay", *arguments]) == 2
         assert capsys.readouterr() == ("", said)

@@ -19,7 +19,8 @@ from rotctl.scenario import build
 
 TINY = 1e-9  # of any number in the log; in so short a run rounding makes 1e-13
 NAMES = (
-    r"(.*\.)?(name|description|source|clip)|disturbance\.body|character\.(trunk|self_collision)\..*"
+    r"(.*\.)?(name|description|source|clip|found_for)|disturbance\.body"
+    r"|character\.(trunk|self_collision)\..*"
 )
 
 

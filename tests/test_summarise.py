@@ -120,7 +120,9 @@ def test_by_any_column_and_a_wrong_one_is_named(made, capsys):
     found_ = table(made)
     assert list(grouped(found_, ["seed"]).rows["n"]) == [2, 2, 2]
     assert list(grouped(found_, []).rows["n"]) == [6]
-    with pytest.raises(InputError, match=r"^--by: no column 'sed'; valid: run_id, status, beh"):
+    with pytest.raises(
+        InputError, match=r"^--by: no column 'sed'; did you mean seed\? valid: run_"
+    ):
         grouped(found_, ["sed"])
 
 

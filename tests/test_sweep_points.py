@@ -94,9 +94,9 @@ def test_the_values_are_those_of_the_config():
     [
         (["seed=range(-1,2)"], "seed=-1: must be greater than or equal to 0"),
         (["seed=1,x"], 'seed="x": must be a valid integer'),
-        (["sed=1,2"], "unknown key 'sed'; valid keys: "),
+        (["sed=1,2"], "unknown key 'sed'; did you mean seed? valid keys: "),
         (["duration.x=1,2"], "unknown key 'duration.x'; valid keys under duration: none, it is "),
-        (["start=rest,ret"], 'start="ret": no such choice; valid: '),
+        (["start=rest,ret"], 'start="ret": no such choice; did you mean rest? valid: '),
         (["start=glob(x*)"], "start=glob(x*): no choice matches; valid: "),
         (["seed=glob(*)"], "seed=glob(*): no such group"),
         (["seed=interval(0,1)"], "seed=interval(0,1): has no steps; write seed=range(start,stop"),
@@ -120,14 +120,12 @@ def test_what_is_wrong_is_said_before_anything_runs(grid, message):
 
 def test_what_does_not_change_is_composed_and_checked_once(monkeypatch):
     """Of 3000 points only what is set is checked, each value once: hours of planning otherwise."""
-    module = import_module("rotctl.sweep.points")
-    composed, checks = [], []
-    monkeypatch.setattr(module, "composed", lambda o: composed.append(o) or config.composed(o))
-    monkeypatch.setattr(module, "check", lambda data: checks.append(1) or config.check(data))
+    module, loaded = import_module("rotctl.sweep.points"), []
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
     grid = ["start=rest,tucked", "controller.pose.weight=1,2,3", "seed=range(0,500)"]
     found = list(points([grid]))
     assert len(found) == 3000
-    assert (len(composed), len(checks)) == (2, 2)
+    assert loaded == [["start=rest"], ["start=tucked"]]
     assert len({id(point.config.controller) for point in found}) == 6
     assert len({id(point.config.character) for point in found}) <= 2
 

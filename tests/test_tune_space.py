@@ -61,7 +61,8 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 1, "hi"],
             1,
-            "unknown key 'parameters[1].hi'; valid keys under parameters[1]: key, low, high, unit, "
+            "unknown key 'parameters[1].hi'; did you mean high? "
+            "valid keys under parameters[1]: key, low, high, unit, "
             "scale, start, reason",
         ),
         (["parameters", 1, "high"], 100.0, "parameters[1]: low=200 must be below high=100"),

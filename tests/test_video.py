@@ -60,9 +60,9 @@ def test_a_window_is_shorter(log, out):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"start": -1.0}, "start is -1 s, valid: 0 to 0.483333 s"),
-        ({"end": 9.0}, "end is 9 s, valid: 0 to 0.483333 s"),
-        ({"start": 0.3, "end": 0.2}, "start is 0.3 s, valid: less than end = 0.2 s"),
+        ({"start": -1.0}, "start (--from) is -1 s, valid: 0 to 0.483333 s"),
+        ({"end": 9.0}, "end (--to) is 9 s, valid: 0 to 0.483333 s"),
+        ({"start": 0.3, "end": 0.2}, "start (--from) is 0.3 s, valid: less than end = 0.2 s"),
     ],
 )
 def test_bad_times_are_named_with_their_range(log, tmp_path, arguments, message):

@@ -23,6 +23,7 @@ from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.landing import Contact, Landing, LandingSettings
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
+from rotctl.meant import instead
 from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
@@ -138,8 +139,8 @@ class Flight:
         """
         tightest = settings.tightest_pose(shape)
         if tightest is None:
-            valid = ", ".join((TUCK, *settings.shapes))
-            raise InputError(f"behaviour.shape={shape}: no such shape; valid: {valid}")
+            valid = instead(shape, (TUCK, *settings.shapes))
+            raise InputError(f"behaviour.shape={shape}: no such shape; {valid}")
         self._settings, self._model, self._frame = settings, model, frame
         self._axis = axis = frame.trunk_axis
         self._target, self._sense = target, 1.0 if target >= 0.0 else -1.0

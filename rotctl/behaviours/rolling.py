@@ -319,4 +319,10 @@ def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:
             f"behaviour.reference.clip={reference.clip}: rolls about {clip.roll_about}, "
             f"but behaviour.roll_about={settings.roll_about}"
         )
+    if reference.found_for not in ("", clip.name):
+        raise InputError(
+            f"behaviour.reference.clip={reference.clip}: is {clip.name}, and window, lead and "
+            f"offsets were found for {reference.found_for}; give the path of that clip, or "
+            "behaviour.reference.found_for='' to bend another by them"
+        )
     return make_reference_pair(model, clip, reference)

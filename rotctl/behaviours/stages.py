@@ -11,6 +11,7 @@ from rotctl.behaviours.posing import RiseSettings
 from rotctl.behaviours.until import Until
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
+from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles
@@ -37,7 +38,7 @@ class TaskSettings:
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
-            raise ValueError(f"no kind {self.kind!r}; valid: {', '.join(KINDS)}")
+            raise ValueError(f"no kind {self.kind!r}; {instead(self.kind, KINDS)}")
         if (self.aim is None) != (self.kind == "limits"):
             raise ValueError(f"a task of kind {self.kind} has {'no' if self.aim else 'an'} aim")
         if bool(self.body) != (self.kind in ("point", "attitude", "joints")):

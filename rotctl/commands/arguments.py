@@ -7,6 +7,8 @@ from typing import Any, TypeAlias
 
 from rotctl.errors import InputError
 
+LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
+
 # Where a command is added; argparse has no public name for it.
 Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
@@ -21,14 +23,29 @@ def folder_name(text: str) -> Path:
 
 
 def log_file(path: Path) -> Path:
-    """The same path.
+    """The path of a log, which may be named by the folder of its run.
 
     Raises:
-        InputError: it is a folder.
+        InputError: it is a folder without a log.
     """
-    if os.path.isdir(path):
-        raise InputError(f"{path}: is a folder; name the log in it, such as {path / 'run.h5'}")
-    return path
+    if not os.path.isdir(path):
+        return path
+    if not os.path.lexists(path / LOG_NAME):
+        raise InputError(
+            f"{path}: is a folder without {LOG_NAME}; name a run, its folder or the log in it; "
+            f"rotctl ls {path} lists them"
+        )
+    return path / LOG_NAME
+
+
+def second(text: str) -> float:
+    """A time [s]."""
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: must be a time [s]; for another format see rotctl export"
+        ) from None
 
 
 def role_and_name(text: str) -> tuple[str, str]:

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from rotctl.commands.arguments import Commands, log_file
+from rotctl.commands.arguments import Commands, log_file, second
 from rotctl.commands.bars import bar, following
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
@@ -82,7 +82,7 @@ def replay(arguments: argparse.Namespace) -> int:
 
     log = RunLog.open(log_file(arguments.log))
     other = arguments.compare and RunLog.open(log_file(arguments.compare))
-    out = arguments.html or arguments.log.with_name("replay.html")
+    out = arguments.html or log.path.with_name("replay.html")
     replay(log, out, other)
     print(out)
     return 0
@@ -113,7 +113,7 @@ def plot(arguments: argparse.Namespace) -> int:
     from rotctl.report.plot import plot
 
     log = RunLog.open(log_file(arguments.log))
-    out = arguments.out or arguments.log.with_name("plot.png")
+    out = arguments.out or log.path.with_name("plot.png")
     plot(log, out, arguments.start, arguments.end)
     print(out)
     return 0
@@ -203,5 +203,5 @@ def verify(arguments: argparse.Namespace) -> int:
 
 
 def _add_window(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--from", type=float, metavar="S", dest="start", help="first time [s]")
-    command.add_argument("--to", type=float, metavar="S", dest="end", help="last time [s]")
+    command.add_argument("--from", type=second, metavar="S", dest="start", help="first time [s]")
+    command.add_argument("--to", type=second, metavar="S", dest="end", help="last time [s]")

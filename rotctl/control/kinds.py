@@ -17,6 +17,7 @@ import numpy as np
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import product
+from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array, rotation_to
@@ -72,7 +73,7 @@ def kind(name: str) -> Kind:
         InputError: there is no such kind.
     """
     if name not in KINDS:
-        raise InputError(f"no kind of task {name!r}; valid: {', '.join(KINDS)}")
+        raise InputError(f"no kind of task {name!r}; {instead(name, KINDS)}")
     return KINDS[name]
 
 

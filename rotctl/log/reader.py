@@ -14,6 +14,7 @@ from rotctl.log import untrusted
 from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.outcome import outcome_of
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
+from rotctl.meant import meant
 
 
 def read_attributes(path: str | Path, *, linked: bool) -> dict[str, bool | int | float | str]:
@@ -187,7 +188,8 @@ class RunLog(Mapping[str, NDArray[Any]]):
     def _require_name(self, name: str) -> None:
         if name not in self.names:
             raise LogError(
-                f"{self.path}: no dataset {name!r}; valid names: {', '.join(self.names)}"
+                f"{self.path}: no dataset {name!r}; {meant(name, self.names)}"
+                f"valid names: {', '.join(self.names)}"
             )
 
     def _text(self, encoded: bytes) -> str:

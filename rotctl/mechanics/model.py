@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
+from rotctl.meant import instead, meant
 from rotctl.mechanics import pair_limit
 from rotctl.mechanics.character import Character, add_character
 from rotctl.mechanics.physics import Physics
@@ -90,8 +91,8 @@ class Model:
             left, right = SIDES
             bases = sorted(set(map(_bare, self.joint_names)))
             raise InputError(
-                f"{key} names the unknown joint {joint!r}; "
-                f"valid: {', '.join(bases)}, limb joints also with {left} or {right}"
+                f"{key} names the unknown joint {joint!r}; {instead(joint, bases)}, "
+                f"limb joints also with {left} or {right}"
             )
         return motors
 
@@ -281,6 +282,8 @@ def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
     character = is_character(mj)  # and neither the world nor a loose box
     if number < 0 or not character[number]:
-        names = ", ".join(mj.body(int(i)).name for i in np.flatnonzero(character))
-        raise InputError(f"{key} names the unknown body {name!r}; bodies: {names}")
+        bodies = [mj.body(int(i)).name for i in np.flatnonzero(character)]
+        near = meant(name, bodies)
+        names = ", ".join(bodies)
+        raise InputError(f"{key} names the unknown body {name!r}; {near}bodies: {names}")
     return int(number)

@@ -17,6 +17,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl import checked, documents, files
 from rotctl.errors import InputError
 from rotctl.listing import named_file, named_files
+from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
@@ -104,7 +105,7 @@ def load_clip(name: str) -> Clip:
         return _read(Path(name))
     if name not in names():
         raise InputError(
-            f"{name}: no such clip; valid: {', '.join(names())}, or the path of a .yaml file"
+            f"{name}: no such clip; {instead(name, names())}, or the path of a .yaml file"
         )
     return _read(named_file("motion", name))
 

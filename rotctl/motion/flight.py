@@ -42,7 +42,10 @@ class Flight:
 
 
 def flights(model: Model, time: Array, positions: Array, leg: float) -> list[Flight]:
-    """The flights of a motion.
+    """The flights of a motion, from take-off to landing.
+
+    What the motion begins or ends with is none: a roll that a capture hangs in the air looks
+    like that.
 
     Args:
         time: (n,) [s].
@@ -55,6 +58,8 @@ def flights(model: Model, time: Array, positions: Array, leg: float) -> list[Fli
     found = []
     edges = np.flatnonzero(np.diff(flying.astype(int)))
     for start, end in zip(edges[::2] + 1, edges[1::2] - 1, strict=True):  # less the edges' frames
+        if start == 1 or end == len(low) - 1:
+            continue
         if end - start < LEAST_FRAMES or low[start:end].max() < LEAST_HEIGHT:
             continue
         height = centres(model, positions[start:end])[:, 2] * ADULT_LEG / leg

@@ -36,12 +36,14 @@ class ReferenceSettings:
             time to reach.
         offsets: by joint name, what is added to the clip [rad]: its mean, cosine and sine over
             the phase, then cosine and sine of twice the phase, and so on. No side is both.
+        found_for: the name in the clip that these numbers bend; any clip, if it is empty.
     """
 
     clip: str
     window: Annotated[NonNegative, Field(le=0.5)]
     lead: Annotated[Finite, Field(ge=-0.5, le=0.5)]
     offsets: dict[str, Harmonics] = field(default_factory=dict)
+    found_for: str = ""
 
 
 @dataclass(frozen=True)

@@ -54,10 +54,10 @@ def window(time: Array, start: float | None, end: float | None) -> tuple[int, in
     Raises:
         InputError: a time is not in the log, or start is not before end.
     """
-    first = nearest(time, "start", float(time[0]) if start is None else start)
-    last = nearest(time, "end", float(time[-1]) if end is None else end)
+    first = nearest(time, "start (--from)", float(time[0]) if start is None else start)
+    last = nearest(time, "end (--to)", float(time[-1]) if end is None else end)
     if start is not None and end is not None and start >= end:
-        raise InputError(f"start is {start:g} s, valid: less than end = {end:g} s")
+        raise InputError(f"start (--from) is {start:g} s, valid: less than end = {end:g} s")
     return first, last
 
 

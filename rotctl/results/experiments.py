@@ -12,6 +12,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl import checked, documents, files
 from rotctl.errors import InputError
 from rotctl.listing import named_file, named_files
+from rotctl.meant import instead
 from rotctl.metrics.claims import Claim, Where
 from rotctl.settings import STRICT
 
@@ -127,5 +128,5 @@ def matrix(overrides: list[str]) -> list[list[str]]:
 def _path(name: str) -> Path:
     valid = names()
     if name not in valid:
-        raise InputError(f"{PREFIX}{name}: no such experiment; valid: {', '.join(valid)}")
+        raise InputError(f"{PREFIX}{name}: no such experiment; {instead(name, valid)}")
     return named_file("experiments", name)

@@ -10,6 +10,7 @@ import pandas as pd
 
 from rotctl import files
 from rotctl.errors import InputError
+from rotctl.meant import instead
 from rotctl.metrics import appearance, pace, rolling
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
@@ -56,7 +57,7 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         if key in keys[:i]:
             raise InputError(f"--by: names {key!r} twice")
         if key not in table.rows.columns:
-            raise InputError(f"--by: no column {key!r}; valid: {', '.join(table.rows.columns)}")
+            raise InputError(f"--by: no column {key!r}; {instead(key, table.rows.columns)}")
     codes = sorted(set(table.rows["code"]) - {""})
     notes = []
     if len(codes) > 1:

@@ -12,7 +12,7 @@ from math import prod
 from typing import Any
 
 from rotctl import plain
-from rotctl.config import Config, changed, check, composed, to_dict
+from rotctl.config import Config, changed, load, to_dict
 from rotctl.errors import InputError
 from rotctl.results.keys import value_at
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
@@ -76,10 +76,10 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     """As `config.load`, but quick where only plain values differ from an earlier point."""
     texts = [one.text for one in assignments]
     if any(one.ordered for one in assignments):
-        return check(composed(texts))
+        return load(texts)
     choosing = tuple(one.text for one in assignments if one.way is None)
     if choosing not in bases:
-        bases[choosing] = check(composed(list(choosing)))
+        bases[choosing] = load(list(choosing))
     base = bases[choosing]
     set_by: dict[str, list[Assignment]] = {}
     for one in assignments:
@@ -94,7 +94,7 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
             for one in setting:
                 found = plain.exchanged(found, one.way or (), one.value)
                 if found is plain.NOTHING:
-                    return check(composed(texts))  # a new key, or an error for Hydra to tell
+                    return load(texts)  # a new key, or an error for Hydra to tell
             parts[key] = found[name]
         made[name] = parts[key]
     return changed(base, made)

@@ -13,6 +13,7 @@ from rotctl import documents
 from rotctl.checked import checked
 from rotctl.errors import InputError
 from rotctl.listing import named_file, named_files
+from rotctl.meant import instead
 from rotctl.metrics import appearance, pace, rolling
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.key_braces import MOST, expanded
@@ -236,7 +237,7 @@ def load_space(name: str) -> Space:
     """
     if not name.endswith(".yaml") and name not in names():
         raise InputError(
-            f"{name}: no such space; valid: {', '.join(names())}, or the path of a .yaml file"
+            f"{name}: no such space; {instead(name, names())}, or the path of a .yaml file"
         )
     path = Path(name) if name.endswith(".yaml") else named_file("tune", name)
     data = documents.read_yaml(path, linked=True)

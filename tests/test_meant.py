@@ -1,0 +1,63 @@
+"""What was probably meant, wherever a name is none."""
+
+import pytest
+
+from rotctl.cli import main
+from rotctl.meant import instead, meant
+
+
+def test_the_nearest_of_the_valid_names():
+    assert meant("wieght", ["damping", "weight", "stiffness"]) == "did you mean weight? "
+    assert meant("rnu", ["show", "run"]) == "did you mean run? "
+    assert instead("lef", ["left", "right"]) == "did you mean left? valid: left, right"
+
+
+@pytest.mark.parametrize("word", ["stand", "", "x" * 100_000, True, None, 3])
+def test_what_is_like_none_of_them_has_no_hint(word):
+    assert meant(word, ["start", "x" * 100_000]) == ""
+    assert instead(word, ["start"]) == "valid: start"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "hint"),
+    [
+        (["run", "behaviour=forwrd_roll"], "no such choice; did you mean forward_roll? valid: "),
+        (["run", "terain=flat"], "unknown key 'terain'; did you mean terrain? valid keys: "),
+        (["run", "controller.pose.wieght=1"], "did you mean weight? valid keys under controller"),
+        (["run", "criteria.kind=rollin"], "no such kind; did you mean rolling? valid: "),
+        (
+            ["run", "character.exclude_from_control=[haed]"],
+            "unknown body 'haed'; did you mean head?",
+        ),
+        (
+            ["run", "+behaviour.poses.a.kneee=1"],
+            "unknown joint 'kneee'; did you mean knee? valid: ",
+        ),
+        (["run", "behaviour=back_flip", "behaviour.shape=tukc"], "did you mean tuck? valid: tuck"),
+        (["sweep", "+experiment=tabel1", "--out=x"], "no such experiment; did you mean table1? "),
+        (["tune", "clips", "--out=x"], "no such space; did you mean clip? valid: clip, "),
+        (
+            ["new", "behaviors", "a", "--from", "b"],
+            "no such kind of file; did you mean behaviour? ",
+        ),
+        (["new", "start", "a", "--from", "rset"], "no such start; did you mean rest? valid: "),
+        (["rnu"], "'rnu': no such choice; did you mean run? valid: run, render, "),
+        (
+            ["run", "--filmstip"],
+            "unrecognized arguments: --filmstip (did you mean --filmstrip?); see",
+        ),
+        (
+            ["export", "r.h5", "--to", "gtlf"],
+            "'gtlf': no such choice; did you mean gltf? valid: bvh",
+        ),
+    ],
+)
+def test_every_kind_of_name_has_it(arguments, hint, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(arguments)
+    except SystemExit as end:  # argparse's own way to refuse
+        code = end.code
+    assert code == 2
+    assert hint in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
