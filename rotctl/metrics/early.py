@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotctl.metrics import finish
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
 from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria, longest_flight
@@ -16,6 +16,8 @@ from rotctl.metrics.standing import StandingCriteria, on_others
 
 if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
+
+TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
 
 def too_short(
@@ -51,7 +53,7 @@ def _missing(
         short = 0.0 <= turned < 1.0 and lasted < criteria.stall_time
         return f"before a whole revolution: it turned {turned:.2f} rev" if short else ""
     if isinstance(criteria, OrientationCriteria):
-        return _before_the_turn(criteria, columns, lasted)
+        return _before_the_turn(log, criteria, columns, lasted)
     if isinstance(criteria, FinishCriteria):
         told, begins = commanded["finish_commanded"], finish.begins(log) * period
         if lasted <= told:
@@ -73,13 +75,16 @@ def _missing(
 
 
 def _before_the_turn(
-    criteria: OrientationCriteria, columns: Mapping[str, float], lasted: float
+    log: Arrays, criteria: OrientationCriteria, columns: Mapping[str, float], lasted: float
 ) -> str:
     here = abs(columns["turned"] - columns["target_excursion"]) < criteria.error
     if here:
         return _resting("it was there", columns["arrival"], lasted, criteria.rest)
-    so_far = f"turned by {columns['turned']:.0f} of {columns['target_excursion']:.0f} deg"
-    return f"{so_far}: it has {criteria.within:g} s" if lasted < criteria.within else ""
+    target = columns["target_excursion"]
+    turns = float(in_frame(log, "trajectory/angular_velocity")[-1, 1])
+    if lasted >= criteria.within or not turns * target > TURNS * abs(target):
+        return ""
+    return f"turned by {columns['turned']:.0f} of {target:.0f} deg: it has {criteria.within:g} s"
 
 
 def _standing(log: Arrays, rest: float, period: float) -> str:

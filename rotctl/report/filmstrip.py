@@ -28,6 +28,7 @@ from rotctl.report.frame import (
     typeface,
 )
 from rotctl.report.rows import drawable, window
+from rotctl.report.skill import Part, parts, spread
 from rotctl.report.title import title
 from rotctl.rotations import Array
 
@@ -55,10 +56,11 @@ def filmstrip(
 
     Args:
         out: replaced if it is there.
-        frames: how many, evenly spaced in time; fewer if there are not as many steps.
+        frames: how many; fewer if there are not as many steps.
         start: time of the first frame [s].
-        end: time of the last frame [s]. Without start and end: two revolutions from
-            2 s on; the whole run where those are not reached.
+        end: time of the last frame [s]; from start to end they are evenly spaced in time. Without
+            both: of a roll two revolutions from 2 s on, the whole run where those are not reached;
+            of anything else what `rotctl.report.skill` finds.
         columns: frames in a row; at most 6 by default.
 
     Raises:
@@ -118,12 +120,10 @@ def _drawn(
 def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> list[int]:
     """Rows of the log to show."""
     time = drawable(log, log["trajectory/qpos"])
-    if start is None and end is None:
-        first, final = _two_turns(time, turns_done(log)[: len(time)])
-    else:
-        first, final = window(time, start, end)
-    rows = np.round(np.linspace(first, final, frames)).astype(int)
-    return list(dict.fromkeys(rows.tolist()))
+    if start is not None or end is not None:
+        return spread([Part(*window(time, start, end), 1.0)], frames)
+    found = parts(log, time) or [Part(*_two_turns(time, turns_done(log)[: len(time)]), 1.0)]
+    return spread(found, frames)
 
 
 def _two_turns(time: Array, turns: Array) -> tuple[int, int]:
@@ -168,8 +168,8 @@ def _header(pen: ImageDraw.ImageDraw, log: RunLog) -> None:
 def _caption(pen: ImageDraw.ImageDraw, x: float, y: float, moment: Moment) -> None:
     font = typeface(16)
     pen.text((x + 2, y), f"{moment.time:.2f} s", INK, font)
-    pen.text((x + FRAME[0] / 2, y), f"{moment.turns:.2f} rev", INK, font, anchor="ma")
-    pen.text((x + FRAME[0] - 2, y), f"blend {moment.blend:.2f}", SOFT, font, anchor="ra")
+    pen.text((x + FRAME[0] / 2, y), f"{moment.turns:z.2f} rev", INK, font, anchor="ma")
+    pen.text((x + FRAME[0] - 2, y), moment.note, SOFT, font, anchor="ra")
 
 
 def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float, weight: float) -> None:

@@ -6,8 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from rotctl.documents import from_yaml
+from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.columns import in_frame
+from rotctl.plain import NOTHING, find
+from rotctl.report.title import plain
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
@@ -20,6 +24,8 @@ PAPER, INK, SOFT = (255, 255, 255), (28, 34, 44), (104, 114, 128)
 GOOD, BAD = (22, 122, 76), (190, 32, 38)
 MOODS = {True: GOOD, False: BAD, None: SOFT}  # of a run's verdict
 USED, UNUSED = (235, 88, 18), (138, 146, 156)
+STEADY = 1e-3  # what varies less over a stage is no blend
+LONGEST = 20  # characters of a stage's name
 _GROUND_INK = (108, 120, 134)
 
 
@@ -29,7 +35,7 @@ class Moment:
 
     time: float  # [s]
     turns: float  # about its axis, since the start of the run [rev]
-    blend: float
+    note: str  # the blend of the poses where there is one, else the name of the stage
     contacts: Array  # (k, 3)
     forces: Array  # (k, 3) [N]
     used: Array  # (k,)
@@ -46,7 +52,7 @@ def turns_done(log: RunLog) -> Array:
 
 def moments(log: RunLog, rows: list[int]) -> list[Moment]:
     """What is drawn over the frames of these rows."""
-    time, turns, blend = log["trajectory/time"], turns_done(log), log["trajectory/blend"]
+    time, turns, notes = log["trajectory/time"], turns_done(log), _notes(log)
     filled = log["contacts/body"] >= 0
     position, used = log["contacts/position"], log["contacts/used"]
     force = log["contacts/force_realised"]
@@ -55,13 +61,42 @@ def moments(log: RunLog, rows: list[int]) -> list[Moment]:
         Moment(
             time=float(time[i]),
             turns=float(turns[i]),
-            blend=float(blend[i]),
+            note=notes[i],
             contacts=position[i, sound[i]].astype(float),
             forces=force[i, sound[i]].astype(float),
             used=used[i, sound[i]],
         )
         for i in rows
     ]
+
+
+def _notes(log: RunLog) -> list[str]:
+    """The blend in every row; where a stage does not blend its name, if the config tells it."""
+    blend = log["trajectory/blend"]
+    stage = log["command/stage"] if "command/stage" in log else np.zeros(len(blend), dtype=int)
+    named, notes = (
+        stage_names(log),
+        np.array([f"blend {value:.2f}" for value in blend], dtype=object),
+    )
+    for number in np.unique(stage).tolist():
+        here = stage == number
+        if np.ptp(blend[here]) < STEADY:
+            notes[here] = named[number] if 0 <= number < len(named) else ""
+    return [str(note) for note in notes]
+
+
+def stage_names(log: RunLog) -> list[str]:
+    """Names of a behaviour's stages by their number in the log; empty if it does not say."""
+    try:
+        config = from_yaml("config", log.config_yaml)
+    except InputError:
+        return []
+    behaviour = find(config, ("behaviour",))
+    finish = find(behaviour, ("finish", "stages"))
+    staged = find(behaviour, ("stages",)) if finish is NOTHING else finish
+    names = [find(one, ("name",)) for one in staged] if isinstance(staged, list) else []
+    shown = [plain(name)[:LONGEST] if isinstance(name, str) else "" for name in names]
+    return shown if finish is NOTHING else ["roll", *shown]
 
 
 def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) -> Image.Image:

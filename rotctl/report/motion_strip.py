@@ -13,7 +13,7 @@ from rotctl.report.frame import INK, PAPER, SOFT, Moment, draw, typeface
 from rotctl.rotations import Array
 
 _MARGIN, _GAP, _CAPTION, _HEADER = 22, 10, 30, 84  # pixels
-_NOTHING = Moment(0.0, 0.0, 0.0, np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=bool))
+_NOTHING = Moment(0.0, 0.0, "", np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=bool))
 
 
 def motion_strip(

@@ -15,12 +15,14 @@ from rotctl.metrics.columns import heading
 from rotctl.report import encoder, gl, stored_model
 from rotctl.report.frame import INK, MOODS, PAPER, SOFT, Moment, draw, moments, typeface
 from rotctl.report.rows import at_rate, drawable, window
+from rotctl.report.skill import parts
 from rotctl.report.title import Title, title
 from rotctl.rotations import Array
 
 RATE = 30.0  # [frames/s] of simulated time, which the video shows as fast as it was
 FRAME = (640, 400)  # pixels of the picture
 HEADER, FOOTER = 48, 32  # pixels above and below it
+BESIDE = 0.5  # [s] before and after what is shown
 FITTED = 60  # states that the camera's distance is chosen from
 
 
@@ -35,8 +37,9 @@ def video(
 
     Args:
         out: replaced if it is there.
-        start: time of the first frame [s]; the run's first by default.
-        end: time of the last frame [s]; the run's last by default.
+        start: time of the first frame [s].
+        end: time of the last frame [s]. Without both: a roll from the run's first to its last, of
+            anything else what `rotctl.report.skill` finds, and a little before and after.
         progress: called after every frame with the number done and of how many.
 
     Raises:
@@ -46,7 +49,7 @@ def video(
     """
     files.require_ending(out, ".mp4")
     states = log["trajectory/qpos"]
-    rows = _rows(drawable(log, states), start, end)
+    rows = _rows(log, drawable(log, states), start, end)
     program = encoder.executable()
     backend = gl.backend()
     # After that only: importing MuJoCo raises where MUJOCO_GL makes no sense.
@@ -67,7 +70,11 @@ def video(
                 progress(i + 1, len(rows))
 
 
-def _rows(time: Array, start: float | None, end: float | None) -> list[int]:
+def _rows(log: RunLog, time: Array, start: float | None, end: float | None) -> list[int]:
+    shown = parts(log, time) if start is None and end is None else []
+    if shown:
+        start = max(float(time[shown[0].first]) - BESIDE, float(time[0]))
+        end = min(float(time[shown[-1].last]) + BESIDE, float(time[-1]))
     first, last = window(time, start, end)
     return (first + np.array(at_rate(time[first : last + 1], RATE))).tolist()
 
@@ -84,6 +91,6 @@ def _captioned(
     pen.text((12, 27), top.verdict, MOODS[top.success], typeface(14))
     y, font = HEADER + FRAME[1] + 7, typeface(15)
     pen.text((12, y), f"{moment.time:.2f} s", INK, font)
-    pen.text((size[0] / 2, y), f"{moment.turns:.2f} rev", INK, font, anchor="ma")
-    pen.text((size[0] - 12, y), f"blend {moment.blend:.2f}", SOFT, font, anchor="ra")
+    pen.text((size[0] / 2, y), f"{moment.turns:z.2f} rev", INK, font, anchor="ma")
+    pen.text((size[0] - 12, y), moment.note, SOFT, font, anchor="ra")
     return whole

@@ -1,0 +1,115 @@
+"""Which part of a run shows what it can do: the flight of a flip, the push that is stood.
+
+Rolls go on as they began, so that two revolutions show them. Everything else has a beginning and an
+end of its own, and most of a run of some seconds comes before or after.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from rotctl.log import RunLog
+from rotctl.metrics.columns import floats
+from rotctl.metrics.dive import entry
+from rotctl.metrics.flip import longest_flight
+from rotctl.report.frame import turns_done
+from rotctl.rotations import Array
+
+FLIGHT = 0.2  # [s] from so long on it is one, not a hop
+BEFORE = 0.5  # [s] of the crouch before a take-off, of the rest before anything else
+AFTER = 0.5  # [s] shown when it is still: arms take longer
+WET = 0.2  # [s] shown in the water
+LONGEST = 3.0  # [s] after a landing: who is not still then has fallen
+SLOW = 0.1  # [m/s] of the centre of mass, that is still
+SLOW_TURN = 0.3  # [rad/s] of the whole body
+QUICK = 0.3  # of the fastest of the centre of mass: from there on something happens
+PERIODS = (1e-3, 10.0)  # [s] of a control step; a stranger's log may say anything
+TURN = 1.0  # [rev] of a roll before it ends
+
+
+class Part(NamedTuple):
+    """Rows from `first` to `last`, and the share of a filmstrip's frames that is theirs."""
+
+    first: int
+    last: int
+    share: float
+
+
+def parts(log: RunLog, time: Array) -> list[Part]:
+    """What to show of a run, in order; empty for a roll that goes on.
+
+    Args:
+        time: of the rows that can be drawn [s].
+    """
+    rows = len(time)
+    period = float(np.clip((time[-1] - time[0]) / max(rows - 1, 1), *PERIODS)) if rows > 1 else 0.0
+    staged = np.asarray(log["command/stage"])[:rows] if "command/stage" in log else np.zeros(rows)
+    if not period:
+        return []
+    off, down = longest_flight(log)
+    if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
+        return _flight(log, off, min(down, rows - 1), period, rows)
+    first, last = _begin(log, staged, period), _still(log, 0, period, rows)
+    return [Part(first, last, 1.0)] if first is not None and last > first else []
+
+
+def spread(chosen: list[Part], frames: int) -> list[int]:
+    """So many rows of these parts at most, evenly within each; the last row of the last."""
+    rows: list[int] = []
+    left, shares = frames, sum(part.share for part in chosen)
+    for part in chosen:
+        many = min(left, max(1, round(left * part.share / shares)))
+        last = part is chosen[-1]
+        places = np.linspace(part.first, part.last, many, endpoint=last)
+        rows += np.round(places).astype(int).tolist()
+        left, shares = left - many, shares - part.share
+    return list(dict.fromkeys(rows))
+
+
+def _flight(log: RunLog, off: int, down: int, period: float, rows: int) -> list[Part]:
+    """Before, in and after a flight; a dive's ends in the water."""
+    steps = round(BEFORE / period)
+    wet = entry(log)
+    if wet is not None and off < wet <= down and not np.asarray(log["contacts/count"])[wet]:
+        last = min(wet + round(WET / period), rows - 1)
+        return [Part(max(off - steps, 0), off, 3.0), Part(off, last, 9.0)]
+    last = min(_still(log, down, period, rows), down + round(LONGEST / period))
+    before = Part(max(off - steps, 0), off, 3.0)
+    return [before, Part(off, down, 5.0), *([Part(down, last, 4.0)] if last > down else [])]
+
+
+def _begin(log: RunLog, staged: Array, period: float) -> int | None:
+    """Where a motion of stages begins, a fall, a push, the end of a roll; None if nothing does."""
+    turns = np.abs(turns_done(log))
+    if staged.any():
+        told = int(np.argmax(staged > 0))
+        if turns[told] > TURN:
+            return int(np.searchsorted(turns[:told], turns[told] - TURN))
+        speed = _speed(log)
+        begin = int(np.argmax(speed > QUICK * speed.max()))
+    elif turns[-1] > TURN:
+        return None
+    elif not np.asarray(log["contacts/count"])[0]:
+        begin = 0
+    else:
+        known = "disturbance/wrench" in log
+        pushed = floats(log, "disturbance/wrench").any(axis=1) if known else np.zeros(1, dtype=bool)
+        if not pushed.any():
+            return None
+        begin = int(np.argmax(pushed))
+    return max(begin - round(BEFORE / period), 0)
+
+
+def _still(log: RunLog, after: int, period: float, rows: int) -> int:
+    """A moment after the row from which it is still for good; the last row, if it never is."""
+    turning = np.sqrt((floats(log, "trajectory/angular_velocity")[:rows] ** 2).sum(axis=1))
+    moving = (_speed(log)[:rows] > SLOW) | (turning > SLOW_TURN)
+    moving[:after] = True
+    late = np.flatnonzero(moving)
+    still = int(late[-1]) + 1 if len(late) else 0
+    return min(still + round(AFTER / period), rows - 1)
+
+
+def _speed(log: RunLog) -> Array:
+    speed: Array = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
+    return speed

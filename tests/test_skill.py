@@ -1,0 +1,126 @@
+"""What of a run is shown: on logs made by hand, and the words below the frames."""
+
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.log import LOG_NAME, RunLog
+from rotctl.report.frame import moments, stage_names
+from rotctl.report.skill import Part, parts, spread
+from rotctl.run import run
+
+RATE = 60.0
+
+
+def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), turns=0.0, falls=False):
+    """A log of which only what `parts` looks at is there; times in seconds.
+
+    Args:
+        stages: when each stage but the first begins.
+        flies: from when to when nothing touches the ground.
+        moves: from when to when it moves.
+        turns: rate [rev/s] up to the first stage's end.
+    """
+    time = np.arange(round(seconds * RATE)) / RATE
+
+    def within(span):
+        return (time >= span[0]) & (time < span[1]) if span else np.zeros(len(time), dtype=bool)
+
+    end = stages[0] if stages else seconds
+    none = np.zeros((len(time), 3))
+    turned = none.copy()
+    turned[:, 1] = 2 * np.pi * turns * np.minimum(time, end)
+    velocity = none.copy()
+    velocity[:, 0] = within(moves)
+    wrench = np.zeros((len(time), 6))
+    wrench[within(pushed), 0] = 100.0
+    count = np.where(within(flies), 0, 4)
+    count[0] *= not falls
+    return {
+        "trajectory/time": time,
+        "command/stage": sum((time >= begin).astype(int) for begin in stages)
+        if stages
+        else np.zeros(len(time), dtype=int),
+        "contacts/count": count,
+        "trajectory/com_velocity": velocity,
+        "trajectory/angular_velocity": none,
+        "trajectory/angular_excursion": turned,
+        "trajectory/trunk_axis": np.tile([0.0, 1.0, 0.0], (len(time), 1)),
+        "disturbance/wrench": wrench,
+    }
+
+
+def seconds_of(log):
+    found = parts(log, log["trajectory/time"])
+    return [(round(part.first / RATE, 2), round(part.last / RATE, 2)) for part in found]
+
+
+@pytest.mark.parametrize(
+    ("log", "shown"),
+    [
+        # A flip: the crouch, the flight, until it stands still for half a second.
+        (
+            log_of(6.0, stages=(1.0, 2.0, 3.0), flies=(2.2, 2.8), moves=(1.8, 3.6)),
+            [(1.7, 2.2), (2.2, 2.8), (2.8, 4.1)],
+        ),
+        # One that never stands still has fallen.
+        (
+            log_of(9.0, stages=(1.0, 2.0), flies=(2.2, 2.8), moves=(1.8, 9.0)),
+            [(1.7, 2.2), (2.2, 2.8), (2.8, 5.8)],
+        ),
+        # A dive: until it is in the water, where nothing touches it for long.
+        (
+            log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0)),
+            [(1.5, 2.0), (2.0, 3.2)],
+        ),
+        # A hop is no flight.
+        (log_of(6.0, stages=(1.0,), flies=(2.0, 2.1), moves=(1.8, 3.0)), [(1.3, 3.5)]),
+        # The last revolution of a roll that ends on its feet.
+        (log_of(9.0, stages=(4.0,), moves=(0.0, 5.0), turns=0.5), [(2.0, 5.5)]),
+        # A push, and a fall.
+        (log_of(6.0, pushed=(1.0, 1.1), moves=(1.0, 2.5)), [(0.5, 3.0)]),
+        (log_of(6.0, moves=(0.0, 1.0), falls=True), [(0.0, 1.5)]),
+        # Rolls, pushed ones too, and what only stands.
+        (log_of(9.0, moves=(0.0, 9.0), turns=0.5), []),
+        (log_of(9.0, moves=(0.0, 9.0), turns=0.5, pushed=(3.0, 3.1)), []),
+        (log_of(6.0), []),
+        (log_of(1 / RATE), []),
+    ],
+)
+def test_what_is_shown(log, shown):
+    assert seconds_of(log) == shown
+
+
+def test_an_older_log_tells_no_stages():
+    log = log_of(6.0, moves=(0.0, 6.0))
+    del log["command/stage"], log["disturbance/wrench"]
+    assert parts(log, log["trajectory/time"]) == []
+
+
+@pytest.mark.parametrize("time", [[0.0, 1e-320], [0.0, 9e4], [-9e4, 9e4]])
+def test_a_clock_that_makes_no_sense(time):
+    log = log_of(2 / RATE, stages=(1 / RATE,), moves=(0.0, 1.0))
+    assert all(0 <= p.first <= p.last < 2 for p in parts(log, np.array(time)))
+
+
+def test_frames_are_spread_by_their_shares():
+    chosen = [Part(0, 30, 1.0), Part(30, 60, 2.0), Part(60, 90, 1.0)]
+    assert spread(chosen, 8) == [0, 15, 30, 38, 45, 52, 60, 90]
+    assert spread(chosen, 1) == [0]
+    assert spread([Part(5, 7, 1.0)], 50) == [5, 6, 7]
+    assert spread([Part(3, 9, 1.0)], 1) == [3]
+
+
+def test_below_a_frame_stands_the_blend_or_else_the_stage(tmp_path):
+    def log(*overrides, duration=0.3):
+        made = run(load([*overrides, f"duration={duration}"]), tmp_path)
+        return RunLog.open(made.folder / LOG_NAME)
+
+    rolls = log("behaviour=forward_roll_1")
+    assert all(moment.note.startswith("blend 0.") for moment in moments(rolls, [0, 10]))
+    assert stage_names(rolls) == []
+    flips = log("behaviour=back_flip", duration=1.3)
+    assert stage_names(flips) == ["stand", "crouch", "tilt", "launch", "flight", "land"]
+    assert [moment.note for moment in moments(flips, [0, flips.steps - 1])] == ["stand", "crouch"]
+    ends = log("behaviour=forward_roll", "+finish=stand")
+    assert stage_names(ends) == ["roll", "stand"]
