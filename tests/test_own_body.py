@@ -102,5 +102,6 @@ def test_what_makes_none_is_told(overrides, expected):
 
 def test_an_unknown_key_is_told():
     assert complaint(INLINE, "character.hight=2").startswith(
-        "unknown key 'hight'; valid keys under character: kind, file, roles, meshes, name, height,"
+        "unknown key 'hight'; did you mean height? valid keys under character: "
+        "kind, file, roles, meshes, name, height,"
     )
