@@ -110,6 +110,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),
         *("align_with_slope", "poses", "reference", "angular_momentum", "pace", "finish"),
+        "course",
         *("source", "description"),
     }
 
@@ -123,6 +124,7 @@ def test_c_knows_what_a_roll_can_be_asked():
         ("physics=lockstep",),
         ("controller.backend=reference",),
         ("behaviour=forward_roll", "+finish=stand"),
+        ("behaviour=forward_roll", "+course=circle"),
     ],
     ids=" ".join,
 )

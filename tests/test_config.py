@@ -418,7 +418,7 @@ def one_of_each():
     return [*({"behaviour": name} for name in groups()["behaviour"]), *mixed]
 
 
-BROUGHT = ("behaviour", "reference", "finish")  # the others are added with a plus
+BROUGHT = ("behaviour", "reference", "finish", "course")  # the others are added with a plus
 CHOICES = [[f"{group}={name}" for group, name in some.items()] for some in one_of_each()]
 
 

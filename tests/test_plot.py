@@ -13,6 +13,7 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import plot as module
 from rotctl.report import stored_model
+from rotctl.report.plan import plan
 from rotctl.report.plot import plot
 from rotctl.report.replay import page
 from rotctl.report.rows import drawable, moderate
@@ -215,3 +216,22 @@ def test_the_command_writes_beside_the_log(log, capsys):
     assert out.stat().st_size > 50_000
     assert main(["plot", "nothing.h5"]) == 2
     assert capsys.readouterr() == ("", "rotctl: nothing.h5: no such file\n")
+
+
+# ---------------------------------------------------------------- from above
+
+
+def test_a_plan_has_the_way_and_where_it_rolled(tmp_path):
+    config = load(["behaviour=forward_roll", "+course=circle", "duration=3", "seed=2003"])
+    folder = run(config, tmp_path).folder
+    out = tmp_path / "plan.svg"
+    assert main(["plot", str(folder / LOG_NAME), "--from-above", "--out", str(out)]) == 0
+    assert {"the way", "centre of mass", "trunk's axis, once a revolution", "0 s"} <= {*words(out)}
+
+
+def test_a_plan_of_who_rolls_straight_on_has_no_way(log, tmp_path):
+    out = tmp_path / "plan.svg"
+    plan(log, out)
+    assert "the way" not in words(out)
+    with pytest.raises(InputError, match=r"plan\.txt"):
+        plan(log, tmp_path / "plan.txt")

@@ -44,6 +44,7 @@ GOOD = RollingMetrics(
     speed_mean=0.4,
     heading_error_end=3.0,
     lateral_drift=0.5,
+    lateral_rms=0.2,
     longest_stall=0.4,
     stalled_at=2.0,
     slowest_revolution=1.5,
@@ -245,6 +246,7 @@ def test_a_heading_about_face_is_not_averaged_away():
 def test_lateral_drift_is_from_the_start(lateral):
     found = measure(make_log(lateral=lateral), CRITERIA, 0.5, PERIOD)
     assert found.lateral_drift == pytest.approx(0.2 * 599 / 60)
+    assert found.lateral_rms == pytest.approx(found.lateral_drift / 3**0.5, rel=2e-3)
     log = make_log()
     log["trajectory/com"][300, 1] -= 1.25  # the largest, not the last
     assert measure(log, CRITERIA, 0.5, PERIOD).lateral_drift == pytest.approx(1.25)

@@ -45,6 +45,7 @@ SUMMARY_KEYS = [
     "speed_mean",
     "heading_error_end",
     "lateral_drift",
+    "lateral_rms",
     "longest_stall",
     "slowest_revolution",
     "setback",

@@ -102,6 +102,15 @@ CASES = {
         r"behaviour\.finish\.(after|reach|turning|within)",
         seconds=1.5,
     ),
+    "path": Case(
+        ("behaviour=forward_roll", "+course=slalom", "behaviour.course.legs=[[0.3,10],[0.3,-5]]"),
+        r"behaviour\.course\..*",
+        seconds=1.2,
+    ),
+    "rates": Case(
+        ("behaviour=forward_roll", "+course=turn", "behaviour.course.schedule=[[0.1,20]]"),
+        r"behaviour\.course\..*",
+    ),
     "slope": Case(("behaviour=decline",), r"terrain\..*|behaviour\.align_with_slope"),
     "posture": Case(
         ("start=still",),

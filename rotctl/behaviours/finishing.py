@@ -112,7 +112,7 @@ class Finishing:
     def _waits(self, roll: "RollingMemory", state: State) -> bool:
         s, momentum = self._settings, state.momentum
         speed = float(dot(self.axes[0], momentum.com_velocity))
-        capture = self._roll.ahead(state) + speed / pendulum_rate(self._model, state)
+        capture = self._roll.ahead(roll, state) + speed / pendulum_rate(self._model, state)
         turning = abs(float(dot(self.axes[1], momentum.angular_velocity))) / tau
         off = abs(self._roll.from_waiting(roll))
         return abs(capture) < s.reach and turning < s.turning and off < s.within

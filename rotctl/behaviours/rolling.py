@@ -20,9 +20,11 @@ import numpy as np
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.bearing import Bearing, Bearings
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
 from rotctl.behaviours.compiled_roll import CompiledRoll
-from rotctl.behaviours.facing import UP, frame_of
+from rotctl.behaviours.course import Course, CourseSettings, Going
+from rotctl.behaviours.facing import UP
 from rotctl.behaviours.finishing import Finishing, FinishSettings
 from rotctl.behaviours.pacing import SLIP, Clock, Pace, PaceSettings
 from rotctl.control import Command, ControllerSettings
@@ -43,7 +45,7 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.rotations import Array, advance, dot
+from rotctl.rotations import Array, about_up, advance, dot, rotate
 from rotctl.settings import STRICT, Finite
 
 
@@ -61,6 +63,7 @@ class RollingSettings:
         align_with_slope: whether that speed is along the slope (section 6) or level.
         pace: how one of the two is kept, whatever the body makes of the pair; none is by default.
         finish: how a roll with a pace ends.
+        course: where it goes from its heading; straight on by default.
     """
 
     name: str
@@ -75,6 +78,7 @@ class RollingSettings:
     angular_momentum: Finite | None = None
     pace: PaceSettings | None = None
     finish: FinishSettings | None = None
+    course: CourseSettings | None = None
     source: str = ""
     description: str = ""
 
@@ -92,6 +96,10 @@ class RollingSettings:
             if self.pace is None:
                 raise ValueError("a roll without a pace does not wait, so that it has no finish")
             self.finish.staged(self.roll_about, self.heading)
+        if self.course and self.finish:
+            raise ValueError("a roll along a course has no finish: it would stand up aslant")
+        if self.course and self.angular_momentum is not None:
+            raise ValueError("a course commands velocities: give no angular_momentum")
 
     @property
     def commanded(self) -> dict[str, float]:
@@ -127,15 +135,20 @@ class RollingMemory(NamedTuple):
     Attributes:
         excursion: AE and phase.
         origin: (3,) where the line of travel began [m].
-        angle: (3,) phi_0 [rad].
+        angle: (3,) phi_0 [rad]; turns with the bearing.
         axis: (3,) the trunk's that should stay on the rolling axis, unit, world.
+        bearing: how it lies to the world.
+        clock: of its pace.
+        course: where its way leads.
     """
 
     excursion: Excursion
     origin: Array
     angle: Array
     axis: Array
+    bearing: Bearing
     clock: Clock = Clock(0.0)
+    course: Course = Course()
 
 
 class Rolling:
@@ -158,16 +171,14 @@ class Rolling:
             InputError: parts that do not fit together.
         """
         self.tasks = ("linear", "spin")
-        self._frame = frame = frame_of(settings.roll_about, settings.heading)
-        self.axes = axes = frame.axes
-        self._left = axes[1]
+        slope, aligned = model.ground.slope, settings.align_with_slope
+        self._bearings = Bearings(settings.roll_about, settings.heading, slope, aligned)
+        self._bearing = self._bearings.at(0.0)
+        self.axes = axes = self._bearing.frame.axes
+        self._course = settings.course.make() if settings.course is not None else None
         self._measured = measured
         self._period = 1.0 / control.rate
-        self._angular_velocity = 2.0 * math.pi * settings.angular_velocity * self._left
-        self._slope = math.atan(math.tan(model.ground.slope) * axes[0, 0])  # along the way
-        along = self._slope if settings.align_with_slope else 0.0
-        self._way = math.cos(along) * axes[0] + math.sin(along) * UP
-        self._velocity = settings.speed * self._way
+        self._rate, self._speed = 2.0 * math.pi * settings.angular_velocity, settings.speed
         given = settings.pace
         self._pace = (
             Pace(given, settings.angular_velocity, settings.speed) if given is not None else None
@@ -181,46 +192,49 @@ class Rolling:
             raise InputError(
                 "behaviour.angular_momentum: excursion=root controls the root's angular velocity"
             )
-        if self._pace and measured.measure == "root":
-            raise InputError("behaviour.pace: excursion=root controls the root's angular velocity")
+        for part in ("pace", "course"):
+            if getattr(settings, part) and measured.measure == "root":
+                raise InputError(
+                    f"behaviour.{part}: excursion=root controls the root's angular velocity"
+                )
         kinds = ("linear", "angular_momentum" if by_momentum else "spin")
         self._tasks = np.concatenate(
             [task(kind(k).number, gains[n], axes) for k, n in zip(kinds, self.tasks, strict=True)]
         )
-        rotation = (settings.angular_momentum or 0.0) * self._left
-        self._tasks["velocity"] = (
-            self._velocity,
-            rotation if by_momentum else self._angular_velocity,
-        )
+        self._momentum = settings.angular_momentum
         self._targets = self._tasks["target"][:, :3]  # views: cheaper than fields, step by step
-        self._velocities = self._tasks["velocity"]
+        self._velocities, self._axes = self._tasks["velocity"], self._tasks["axes"]
+        self._velocities[:] = self._constant(self._bearing)
         self._damping, self._usual = self._tasks["damping"], self._tasks["damping"].copy()
         self._control, self._held_out = control, model.excluded
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] of the pelvis against the slope."""
-        tilt = (pitch - self._slope) * self._left
-        return Placement(advance(self._frame.orientation, tilt), self._poses.start(pitch))
+        on = self._bearing
+        tilt = (pitch - on.slope) * on.left
+        return Placement(advance(on.frame.orientation, tilt), self._poses.start(pitch))
 
     def begin(self, pitch: float, state: State) -> RollingMemory:
         """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
-        line = state.momentum.com - dot(self._left, state.momentum.com) * self._left
-        now = excursion.start(pitch, self._left)
-        return RollingMemory(
-            now, line, now.angle, self._axis(state), Clock(self._come(now, state, line))
-        )
+        on, com = self._bearing, state.momentum.com
+        line = com - dot(on.left, com) * on.left if self._course is None else com
+        now = excursion.start(pitch, on.left)
+        axis = on.frame.axis(state.trunk_axes)
+        memory = RollingMemory(now, line, now.angle, axis, on)
+        return memory._replace(clock=Clock(self._come(memory, state)))
 
-    def _come(self, now: Excursion, state: State, origin: Array) -> float:
+    def _come(self, memory: RollingMemory, state: State) -> float:
         """How far it has come along what its pace keeps [rev]."""
-        if self._travel:
-            along = state.momentum.com - origin
-            return float(dot(self.axes[0], along)) / self._travel
-        return float(dot(self._left, now.angle)) / math.tau
+        if not self._travel:
+            return float(dot(memory.bearing.left, memory.excursion.angle)) / math.tau
+        if self._course is not None:
+            return memory.course.along / self._travel
+        return float(dot(self.axes[0], state.momentum.com - memory.origin)) / self._travel
 
-    def ahead(self, state: State) -> float:
+    def ahead(self, memory: RollingMemory, state: State) -> float:
         """How far the centre of mass is ahead of what its pace waits over [m]."""
         middle = state.data.xipos[self._over].mean(axis=0)
-        return float(dot(self.axes[0], state.momentum.com - middle))
+        return float(dot(memory.bearing.frame.axes[0], state.momentum.com - middle))
 
     def from_waiting(self, memory: RollingMemory) -> float:
         """How far it is before the phase in which its pace waits, at most half [rev]."""
@@ -228,49 +242,72 @@ class Rolling:
 
     def advance(self, before: RollingMemory, state: State, goes: bool = True) -> RollingMemory:
         """Memory now, from that of the previous control step; `goes` on, or waits for good."""
-        axis = self._axis(state)
+        past, spin = before, state.momentum.angular_velocity
+        if self._course is not None:
+            past = self._turned(before, state)
+            turn = past.course.turned - before.course.turned
+            spin = spin - turn / self._period * UP  # that is left to who turns along
+        on = past.bearing
+        axis = on.frame.axis(state.trunk_axes)
         now = excursion.integrate(
-            before.excursion,
-            state.momentum.angular_velocity,
-            axis,
-            self._left,
-            self._period,
-            self._measured.correction_time,
+            past.excursion, spin, axis, on.left, self._period, self._measured.correction_time
         )
-        turned = self._frame.turned(state.trunk_axes) + self._slope
+        turned = on.frame.turned(state.trunk_axes) + on.slope
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
         if self._measured.measure == "root":
-            now = excursion.on_root(now, state.position[3:7], self._frame.orientation)
-        clock = before.clock
-        if self._pace:
-            come = self._come(now, state, before.origin)
-            clock = self._pace.tick(clock, come, state.time, self._period)
-            if not goes:
-                clock = Clock(come - SLIP, -SLIP)
-        return RollingMemory(now, before.origin, before.angle, axis, clock)
+            now = excursion.on_root(now, state.position[3:7], on.frame.orientation)
+        memory = past._replace(excursion=now, axis=axis)
+        if self._pace is None:
+            return memory
+        come = self._come(memory, state)
+        clock = self._pace.tick(before.clock, come, state.time, self._period)
+        return memory._replace(clock=clock if goes else Clock(come - SLIP, -SLIP))
+
+    def _turned(self, before: RollingMemory, state: State) -> RollingMemory:
+        """What it remembers, turned with its way."""
+        assert self._course is not None
+        momentum = state.momentum
+        x, y = (float(dot(each, momentum.com - before.origin)) for each in self.axes[:2])
+        speed = float(dot(before.bearing.frame.axes[0], momentum.com_velocity))
+        going = Going(x, y, speed)
+        course = self._course.follow(before.course, going, state.time, self._period)
+        turn = about_up(course.turned - before.course.turned)
+        return before._replace(
+            excursion=excursion.turned(before.excursion, turn),
+            angle=rotate(turn, before.angle),
+            bearing=self._bearings.at(course.turned),
+            course=course,
+        )
 
     def command(self, memory: RollingMemory, state: State) -> Command:
         """What rolling wants at this instant."""
-        now, measure = memory.excursion, self._measured.measure
+        now, measure, on = memory.excursion, self._measured.measure, memory.bearing
         pose_a, pose_b = self._poses.at(now.phase)
+        velocity, spin = self._speed * on.way, self._rate * on.left
+        self._velocities[:] = self._constant(on)
         if self._pace:
-            wanted = self._pace.at(now.phase, self.ahead(state), memory.clock.late, state.time)
-            self._velocities[0] = wanted.speed * self._way
-            self._velocities[1] = math.tau * wanted.rate * self._left
+            ahead = self.ahead(memory, state)
+            wanted = self._pace.at(now.phase, ahead, memory.clock.late, state.time)
+            self._velocities[0] = wanted.speed * on.way
+            self._velocities[1] = math.tau * wanted.rate * on.left
             self._damping[:] = self._usual
             self._damping[0, 0] *= wanted.brake
             self._damping[1, 1] *= wanted.brake
-        self._targets[0] = memory.origin + state.time * self._velocity
-        target = memory.angle + state.time * self._angular_velocity  # phi_hat
-        self._targets[1] = excursion.error(now, target, self._left, measure)
+        self._targets[0] = memory.origin + state.time * velocity
+        target = memory.angle + state.time * spin  # phi_hat
+        self._targets[1] = excursion.error(now, target, on.left, measure)
         if measure == "root":  # AV that is off by as much as the root's velocity is
             aside = state.momentum.angular_velocity - state.root_angular_velocity
-            self._velocities[1] = self._angular_velocity + aside
+            self._velocities[1] = spin + aside
+        if self._course is not None:
+            self._axes[:] = on.frame.axes
+            self._targets[0] = self._place(memory, state)
+            self._velocities[1] += memory.course.rate * UP
         return Command(
             tasks=self._tasks,
             pose_a=pose_a,
             pose_b=pose_b,
-            forward=self.axes[0],
+            forward=on.frame.axes[0],
             pose=self._control.pose,
             contact=self._control.contact,
             supervisor=self._control.supervisor,
@@ -278,34 +315,47 @@ class Rolling:
             held_out=self._held_out,
         )
 
+    def _constant(self, on: Bearing) -> tuple[Array, Array]:
+        """What is commanded of the centre of mass and about it, (3,) each, if nothing varies it."""
+        turning = self._rate if self._momentum is None else self._momentum
+        return self._speed * on.way, turning * on.left
+
     def signals(self, memory: RollingMemory, state: State) -> Signals:
         """What the log keeps of it.
 
         Forward, phase pi/2 is face down and pi on the upper back; backward, pi/2 is on the back.
         """
         now = memory.excursion
-        return Signals(angle=now.angle, phase=now.phase, axis=memory.axis, axes=self.axes)
+        axes = memory.bearing.frame.axes
+        return Signals(angle=now.angle, phase=now.phase, axis=memory.axis, axes=axes)
+
+    def _place(self, memory: RollingMemory, state: State) -> Array:
+        """The nearest place (3,) of its way [m]; where it is, if that has none."""
+        if memory.course.place is None:
+            return state.momentum.com
+        x, y = memory.course.place
+        return memory.origin + x * self.axes[0] + y * self.axes[1]
 
     def compiled(self) -> CompiledRoll | None:
-        """The same for C, which works on the same tasks; None under `root`, which it has not."""
-        if self._measured.measure == "root":
+        """The same for C, which works on the same tasks; None where it has not what is asked.
+
+        That is `root`, and a course.
+        """
+        if self._measured.measure == "root" or self._course is not None:
             return None
+        on = self._bearing
         made = CompiledRoll(
-            self._frame,
+            on.frame,
             self._measured,
             self._period,
-            self._slope,
-            (self._velocity, self._angular_velocity),
+            on.slope,
+            (self._speed * on.way, self._rate * on.left),
             self._poses,
             self._tasks,
         )
         if self._pace:
-            made.add_pace(self._pace, self._way, self._over, self._usual)
+            made.add_pace(self._pace, on.way, self._over, self._usual)
         return made
-
-    def _axis(self, state: State) -> Array:
-        """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
-        return self._frame.axis(state.trunk_axes)
 
 
 def _poses(settings: RollingSettings, model: Model) -> PosePair | ReferencePair:

@@ -101,7 +101,12 @@ def add_plot(commands: Commands) -> None:
         "--out",
         type=Path,
         metavar="OUT.png|.svg|.pdf",
-        help="where to write it [plot.png by the log]",
+        help="where to write it [plot.png or plan.png by the log]",
+    )
+    command.add_argument(
+        "--from-above",
+        action="store_true",
+        help="plot where it rolled, beside the way that it was to follow",
     )
     _add_window(command)
     command.set_defaults(command=plot, interrupted="an unfinished picture is not written")
@@ -110,11 +115,13 @@ def add_plot(commands: Commands) -> None:
 def plot(arguments: argparse.Namespace) -> int:
     """Plot a log on one page."""
     from rotctl.log import RunLog
+    from rotctl.report.plan import plan
     from rotctl.report.plot import plot
 
     log = RunLog.open(log_file(arguments.log))
-    out = arguments.out or log.path.with_name("plot.png")
-    plot(log, out, arguments.start, arguments.end)
+    name, drawn = ("plan.png", plan) if arguments.from_above else ("plot.png", plot)
+    out = arguments.out or log.path.with_name(name)
+    drawn(log, out, arguments.start, arguments.end)
     print(out)
     return 0
 

@@ -24,7 +24,15 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.rotations import Array, advanced, crossed, multiply, rotated, rotation_between
+from rotctl.rotations import (
+    Array,
+    advanced,
+    crossed,
+    multiply,
+    rotate,
+    rotated,
+    rotation_between,
+)
 from rotctl.settings import STRICT, Positive
 
 ExcursionName = Literal["oriented", "integral", "root"]
@@ -98,6 +106,13 @@ def integrate(
     return Excursion(
         np.array([a + turn[0], b + turn[1], c + turn[2]]), np.array(pulled), excursion.phase + along
     )
+
+
+def turned(excursion: Excursion, turn: Array) -> Excursion:
+    """The same, seen by who has turned: rolling axis and all by a unit quaternion (4,)."""
+    back = turn * [1.0, -1.0, -1.0, -1.0]
+    orientation = multiply(multiply(turn, excursion.orientation), back)
+    return Excursion(rotate(turn, excursion.angle), orientation, excursion.phase)
 
 
 def keep_phase(excursion: Excursion, turned: float, period: float, phase_time: float) -> Excursion:

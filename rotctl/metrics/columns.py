@@ -53,13 +53,43 @@ def heading(log: Arrays) -> float:
     return atan2(y, x)
 
 
+def turns(log: Arrays) -> bool:
+    """Whether the behaviour's frame turns in the course of a run."""
+    axes = floats(log, "command/axes") if "command/axes" in log else np.empty((0, 3, 3))
+    return len(axes) > 0 and bool((axes != axes[0]).any())
+
+
 def in_frame(log: Arrays, name: str) -> NDArray[np.float64]:
     """World vectors (steps, 3) of the log along the behaviour's forward, left and up."""
     return along_frame(log, floats(log, name))
 
 
-def along_frame(log: Arrays, vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """World vectors (n, 3) along the behaviour's forward, left and up."""
+def along_frame(
+    log: Arrays, vectors: NDArray[np.float64], rows: slice = slice(None)
+) -> NDArray[np.float64]:
+    """World vectors (n, 3) of some rows along the behaviour's forward, left and up there."""
     from rotctl.linear import product  # MuJoCo's: to import it fails where MUJOCO_GL is wrong
 
-    return product(vectors, frame(log).T)
+    if not turns(log):
+        return product(vectors, frame(log).T)
+    x, y, z = floats(log, "command/axes")[rows].transpose(2, 0, 1)
+    return vectors[:, :1] * x + vectors[:, 1:2] * y + vectors[:, 2:] * z
+
+
+def along_way(log: Arrays) -> NDArray[np.float64]:
+    """The centre of mass (steps, 3): how far along its way, left of it, and high [m].
+
+    A way that turns is as long as what was travelled along it; what is left of it is the distance
+    to its nearest place. A way without places has nothing beside it.
+    """
+    com = in_frame(log, "trajectory/com")
+    if not turns(log):
+        return com
+    place = floats(log, "trajectory/com")
+    task = np.asarray(log["model/task"]).tolist().index(b"linear")
+    off = place - floats(log, "command/target")[:, task, :3]
+    off[:, 2] = 0.0
+    side = np.sign(along_frame(log, off)[:, 1])
+    ahead = along_frame(log, np.diff(place, axis=0), slice(0, -1))[:, 0]
+    way = np.concatenate(([0.0], np.cumsum(ahead)))[: len(place)]
+    return np.column_stack((way, side * np.sqrt((off**2).sum(axis=1)), com[:, 2]))

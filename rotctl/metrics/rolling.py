@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics.columns import Arrays, Column, floats, in_frame, solver_failures
+from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
 from rotctl.metrics.smoothness import chatter, jerk, recovery, sticking
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
@@ -21,6 +21,7 @@ COLUMNS = (
     Column("speed_commanded", "Speed asked for", "m/s"),
     Column("heading_error_end", "Heading error at the end", "deg"),
     Column("lateral_drift", "Sideways drift", "m"),
+    Column("lateral_rms", "Beside its line or path, rms", "m"),
     Column("longest_stall", "Longest stall", "s"),
     Column("slowest_revolution", "Slowest revolution", "s"),
     Column("setback", "Furthest back", "rev"),
@@ -100,6 +101,7 @@ class RollingMetrics:
         heading_error_end: median heading of the trunk's axis that it rolls about, over
             the last second, against the rolling axis [deg]; positive turns left.
         lateral_drift: furthest of the centre of mass to either side of where it started [m].
+        lateral_rms: root mean square of how far it is beside that line, or the path it follows [m].
         longest_stall: longest time without the criterion's progress [s].
         stalled_at: when that began [s].
         slowest_revolution: longest time that a revolution took [s].
@@ -132,6 +134,7 @@ class RollingMetrics:
     speed_mean: float
     heading_error_end: float
     lateral_drift: float
+    lateral_rms: float
     longest_stall: float
     stalled_at: float
     slowest_revolution: float
@@ -170,6 +173,7 @@ IN_FILES_ONLY = (
     "setback",
     "height_least",
     "height_most",
+    "lateral_rms",
     "penetration",
     "ground_force_p99",
     "ground_force_peak",
@@ -179,7 +183,14 @@ IN_FILES_ONLY = (
     "recovery",
     "recovered",
 )
-_ZERO_AT_FIRST = ("duration", "revolutions", "lateral_drift", "longest_stall", "stalled_at")
+_ZERO_AT_FIRST = (
+    "duration",
+    "revolutions",
+    "lateral_drift",
+    "lateral_rms",
+    "longest_stall",
+    "stalled_at",
+)
 _NO_ROWS: dict[str, Any] = {each.name: math.nan for each in fields(RollingMetrics)}
 NO_ROWS = RollingMetrics(**_NO_ROWS | dict.fromkeys(_ZERO_AT_FIRST, 0.0) | {"solver_failures": 0})
 
@@ -194,7 +205,7 @@ def measure(
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
     """
-    com = in_frame(log, "trajectory/com")
+    com = along_way(log)
     steps = len(com)
     if steps == 0:
         return NO_ROWS
@@ -208,6 +219,7 @@ def measure(
     last_second = axis[-round(1.0 / period) :]
     heading = np.degrees([math.atan2(-x, y) for x, y, _ in last_second.tolist()])
     stall, stalled_at = longest_stall(progress, criteria.stall_progress, period)
+    beside = com[:, 1] - com[0, 1]
     height = com[:, 2] - floats(log, "trajectory/ground_height")
     force = floats(log, "contacts/ground_force")
     fraction = np.abs(log["trajectory/ctrl"]) / log["model/torque_limit"]
@@ -217,7 +229,8 @@ def measure(
         angular_velocity_mean=float((angle[-1] - angle[first]) / elapsed),
         speed_mean=float((com[-1, 0] - com[first, 0]) / elapsed),
         heading_error_end=_median_angle(heading),
-        lateral_drift=float(np.abs(com[:, 1] - com[0, 1]).max()),
+        lateral_drift=float(np.abs(beside).max()),
+        lateral_rms=float(np.sqrt((beside**2).mean())),
         longest_stall=stall,
         stalled_at=stalled_at,
         setback=setback(progress),
@@ -248,7 +261,7 @@ def _worst_revolutions(
     first, last = revolutions(progress)
     if not len(last):
         return dict.fromkeys(OF_REVOLUTIONS, math.nan)
-    x = direction * in_frame(log, "trajectory/com")[:, 0]
+    x = direction * along_way(log)[:, 0]
     about = floats(log, "trajectory/trunk_axis")
     turn = direction * turned_about(about, floats(log, "trajectory/qpos")[:, 3:7])
     in_air = ~floats(log, "contacts/ground_force").any(axis=1)

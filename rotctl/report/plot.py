@@ -1,5 +1,6 @@
 """A run as one page of plots, drawn from the log alone: PNG, SVG or PDF."""
 
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -56,19 +57,29 @@ def plot(log: RunLog, out: Path, start: float | None = None, end: float | None =
         LogError: the log is damaged or its model is not safe to load.
     """
     files.require_ending(out, *FORMATS)
-    kind = FORMATS[out.suffix.lower()]
     log = moderate(log)
     time = drawable(log, log["trajectory/qpos"])
     first, last = window(time, start, end)
+    write(out, SIZE, lambda figure: _draw(figure, log, slice(first, last + 1)))
+
+
+def write(out: Path, size: tuple[float, float], draws: Callable[[Any], object]) -> None:
+    """Write a figure of a size [inch] that `draws` fills.
+
+    Raises:
+        InputError: `out` is no .png, .svg or .pdf file, or cannot be written.
+    """
+    files.require_ending(out, *FORMATS)
+    kind = FORMATS[out.suffix.lower()]
     mujoco_without_opengl()
     import matplotlib
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=SIZE, dpi=DOTS)
+        figure = Figure(figsize=size, dpi=DOTS)
         FigureCanvasAgg(figure)
-        _draw(figure, log, slice(first, last + 1))
+        draws(figure)
         packed = BytesIO()
         nothing = {"Date": None} if kind == "svg" else {"CreationDate": None}
         figure.savefig(packed, format=kind, metadata={} if kind == "png" else nothing)
@@ -81,7 +92,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     run = signals(log, rows)
     model = stored_model.load(log)
     pull = max(character.weight(model), 1.0)
-    _heading(figure, log)
+    heading(figure, log)
     grid = figure.add_gridspec(
         8, 6, left=0.1, right=0.935, top=0.922, bottom=0.045, hspace=0.7, wspace=1.3,
         height_ratios=[1, 1, 1, 1, 0.75, 0.8, 1.5, 0.9],
@@ -121,10 +132,12 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
             each.set_xlabel("time [s]")
 
 
-def _heading(figure: Any, log: RunLog) -> None:
+def heading(figure: Any, log: RunLog, top_of: float = SIZE[1]) -> None:
+    """What was run and how it went, at the top of a page so high [inch]."""
     top = title(log)
+    first, second = (1.0 - (1.0 - y) * SIZE[1] / top_of for y in (0.968, 0.950))
     colour = {True: draw.GOOD, False: draw.BAD, None: draw.GREY}[top.success]
     # parse_math: a stranger's dollar signs are no formulas.
-    figure.text(0.1, 0.968, top.name, size=13, weight="bold", parse_math=False)
-    figure.text(0.935, 0.968, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
-    figure.text(0.1, 0.950, top.verdict, size=9, color=colour, weight="bold", parse_math=False)
+    figure.text(0.1, first, top.name, size=13, weight="bold", parse_math=False)
+    figure.text(0.935, first, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
+    figure.text(0.1, second, top.verdict, size=9, color=colour, weight="bold", parse_math=False)

@@ -91,7 +91,7 @@ def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
     return Rates(
         desired=in_frame(log, "trajectory/linear_momentum_rate_desired")[rows],
         predicted=in_frame(log, "trajectory/linear_momentum_rate_predicted")[rows],
-        realised=along_frame(log, _ground_force(log, rows) + weight),
+        realised=along_frame(log, _ground_force(log, rows) + weight, rows),
     )
 
 
@@ -101,7 +101,7 @@ def angular_rates(log: RunLog, rows: slice) -> Rates:
     return Rates(
         desired=in_frame(log, "trajectory/angular_momentum_rate_desired")[rows],
         predicted=in_frame(log, "trajectory/angular_momentum_rate_predicted")[rows],
-        realised=along_frame(log, np.cross(arms, _forces(log, rows)).sum(axis=1)),
+        realised=along_frame(log, np.cross(arms, _forces(log, rows)).sum(axis=1), rows),
     )
 
 
