@@ -18,6 +18,7 @@ examples:
   rotctl run controller.pose.weight=0.5
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl judge sweeps/a criteria.stall_time=2     verdicts by other criteria, nothing simulated
+  rotctl judge sweeps/a --metric "top=max(com[:,2])"  a column of your own
   rotctl summarise sweeps/a                       success rate with its interval, quartiles
   rotctl report sweeps --out site                 pages on sweeps: claims with verdicts
   rotctl list                                     what can be chosen

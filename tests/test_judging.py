@@ -74,7 +74,12 @@ def test_the_command_leaves_logs_and_rows_as_they_are(made, capsys, monkeypatch)
     ("overrides", "said"),
     [
         (["seed=1"], "seed=1: judge takes criteria=CHOICE and criteria.KEY=VALUE alone"),
-        ([], "no criteria; such as criteria=landing, or criteria.stall_time=2"),
+        ([], "no criteria; such as criteria=landing or criteria.stall_time=2, or --metric"),
+        (["--metric", "revolutions=1"], "metric revolutions: there is a column of that name"),
+        (["--metric", "top=max(kom)"], "metric top: no array 'kom' in a log; did you mean com? "),
+        (["--metric", "top=com[:, 9]"], "metric top: index 9 is out of bounds for axis 1"),
+        (["--metric", "top=com"], "metric top: gives 120 x 3 values; make one of them"),
+        (["--metrics", "no.yaml"], "no.yaml: no such file"),
         (["criteria=none"], 'criteria="none": no such choice; valid: '),
         (["criteria.no=1"], "no run can be judged: unknown key 'criteria.no'; valid keys under"),
     ],
@@ -137,3 +142,40 @@ def test_criteria_that_fit_no_run_leave_the_table_as_it_was(tmp_path, capsys):
     assert main(["judge", str(tmp_path), "criteria=landing"]) == 2
     assert "no run can be judged: " in capsys.readouterr().err
     assert (tmp_path / "judged.csv").read_text() == "before\n"
+
+
+def test_metrics_of_ones_own_are_columns(made, tmp_path, capsys, monkeypatch):
+    without_processes(monkeypatch)
+    texts = tmp_path / "mine.yaml"
+    texts.write_text("top: max(com[:, 2])\nin_air: mean(count == 0)\n")
+    given = ["--metrics", str(texts), "--metric", "late=time[119] if 0 else 0"]
+    assert main(["judge", str(made), *given]) == 2  # an expression has no `if`
+    assert "metric late: IfExp is not allowed" in capsys.readouterr().err
+    given[-1] = "late = first(com[:, 2] > 99)"
+    assert main(["judge", str(made), *given]) == 0
+    stdout, stderr = capsys.readouterr()
+    assert "0 successes are none by these criteria, 0 others are" in stdout
+    assert "top" in stdout
+    assert stderr == ""
+    rows = list(csv.DictReader(io.StringIO((made / "judged.csv").read_text())))
+    for row in rows:
+        log = RunLog.open(made / row["log"])
+        assert float(row["top"]) == log["trajectory/com"][:, 2].max()
+        assert float(row["in_air"]) == pytest.approx(float(row["airborne"]))
+        assert row["late"] == ""
+    assert len(rows) == 2
+
+
+def test_a_metric_that_some_runs_lack_is_told(tmp_path, capsys, monkeypatch):
+    swept(tmp_path, "seed=1", "duration=1,2")
+    without_processes(monkeypatch)
+    assert main(["judge", str(tmp_path), "--metric", "late=com[100, 2]"]) == 0
+    assert "1 runs: metric late: index 100 is out of bounds" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["- a", "top: 3", "top: [max(com)]", "x"])
+def test_a_file_that_is_none_of_metrics(made, tmp_path, capsys, text):
+    path = tmp_path / "mine.yaml"
+    path.write_text(text)
+    assert main(["judge", str(made), "--metrics", str(path)]) == 2
+    assert "must be NAME: EXPRESSION, one a line" in capsys.readouterr().err

@@ -1,13 +1,15 @@
 """What a run is worth, and when it is cut."""
 
 from dataclasses import replace
-from math import cos, nan, pi, radians, sin
+from math import cos, isnan, nan, pi, radians, sin
 
 import numpy as np
 import pytest
 
 from rotctl.config import load
+from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
+from rotctl.metrics.expression import read
 from rotctl.tune.attempt import Attempt, attempt, hopeless
 from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
 from rotctl.tune.space import Objective, Stopping, Wish
@@ -59,6 +61,20 @@ def test_a_run_has_the_columns_that_are_asked_for():
     found = attempt(item).columns
     assert list(found) == ["head_share", "rate_error"]
     assert 0.01 < found["head_share"] < 0.5
+
+
+def test_metrics_of_ones_own_are_among_them():
+    config = load(["seed=1000000", "duration=3"])
+    top = read("top", "max(com[:, 2])")
+    found = attempt(Attempt(config, STOPPING, ("top", "jerk"), (top,))).columns
+    assert list(found) == ["top", "jerk"]
+    assert 0.4 < found["top"] < 0.8
+    late = Attempt(config, STOPPING, ("late",), (read("late", "com[179, 2]"),))
+    assert 0.0 < attempt(late).columns["late"] < 0.8
+    cut = replace(late, stopping=replace(STOPPING, stall_time=0.1))
+    assert isnan(attempt(cut).columns["late"])
+    with pytest.raises(InputError, match="metric bad: index 9 is out of bounds"):
+        attempt(Attempt(config, STOPPING, ("bad",), (read("bad", "com[0, 9]"),)))
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import yaml
 from rotctl.config import load, to_dict
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
+from rotctl.metrics.expression import NAMES
 from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (
     configs,
@@ -98,7 +99,18 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["objective", "columns"],
             {"head": {"weight": 1.0, "miss": 0.1, "high": 0.1}},
-            f"objective.columns: a roll has no column 'head'; it has: {', '.join(ROLLING)}",
+            f"objective: a roll has no column 'head'; it has: {', '.join(ROLLING)}",
+        ),
+        (
+            ["objective", "metrics"],
+            {"top": "max(kom)"},
+            "objective: metric top: no array 'kom' in a log; did you mean com? valid: "
+            f"{', '.join([*NAMES, 'period', 'pi'])}",
+        ),
+        (
+            ["objective", "metrics"],
+            {"jerk": "1"},
+            "objective: metric jerk: there is a column of that name already",
         ),
         (["runs"], None, "runs=null: must be keys with values"),
         (

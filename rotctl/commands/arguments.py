@@ -48,6 +48,14 @@ def second(text: str) -> float:
         ) from None
 
 
+def name_and_text(text: str) -> tuple[str, str]:
+    """top=max(com[:, 2]): a name, and what it stands for."""
+    name, equals, rest = text.partition("=")
+    if not name.strip() or not equals or not rest.strip():
+        raise argparse.ArgumentTypeError(f"{text!r}: write NAME=EXPRESSION")
+    return name.strip(), rest
+
+
 def role_and_name(text: str) -> tuple[str, str]:
     """left_hip=Bone_7: which joint or body is what."""
     from rotctl.motion.naming import ROLES

@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, name_and_text
 from rotctl.commands.bars import bar, following
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
@@ -93,10 +93,22 @@ def add_judge(commands: Commands) -> None:
         help="verdicts by other criteria, without simulation",
         description="Judge all runs below DIR that have logs by other criteria, such as "
         "criteria=landing or criteria.stall_time=2: verdicts and metrics again, one row a run, in "
-        "DIR/judged.csv, beside the verdicts that were. Logs and rows stay as they are.",
+        "DIR/judged.csv, beside the verdicts that were; and by metrics of your own, such as "
+        "--metric 'top=max(com[:, 2])'. Logs and rows stay as they are.",
     )
     command.add_argument("folder", type=Path, metavar="DIR")
     command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help="of criteria alone")
+    command.add_argument(
+        "--metric",
+        type=name_and_text,
+        action="append",
+        default=[],
+        metavar="NAME=EXPRESSION",
+        help="a further column, of the log's arrays (docs/metrics.md)",
+    )
+    command.add_argument(
+        "--metrics", type=Path, metavar="FILE.yaml", help="NAME: EXPRESSION, one a line"
+    )
     command.add_argument("--by", metavar="KEY,KEY", help="columns to group by, as in summarise")
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
     command.set_defaults(command=judge)
@@ -107,13 +119,18 @@ def judge(arguments: argparse.Namespace) -> int:
     from contextlib import closing
 
     from rotctl import files
+    from rotctl.metrics.expression import file_of_metrics, read_all
     from rotctl.results.groups import grouped, markdown
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine
 
-    wanted = criteria(arguments.overrides)
+    texts = dict(arguments.metric)
+    if arguments.metrics is not None:
+        texts = file_of_metrics(arguments.metrics) | texts
+    metrics = read_all(texts)
+    wanted = criteria(arguments.overrides, none=bool(metrics))
     with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
-        found = judge(arguments.folder, wanted, engine, shown.update)
+        found = judge(arguments.folder, wanted, engine, shown.update, metrics)
     groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
     print(printable(markdown(groups)), end="\n\n")
     print(f"{found.lost} successes are none by these criteria, {found.won} others are")

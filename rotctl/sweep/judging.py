@@ -1,16 +1,19 @@
 """Verdicts and measures once more, by other criteria, out of the logs: nothing is simulated."""
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rotctl.checked import unknown_key
 from rotctl.config import check, composed
 from rotctl.errors import InputError
 from rotctl.log import RunLog
+from rotctl.metrics.evaluation import evaluate
+from rotctl.metrics.expression import Expression
 from rotctl.overrides import assigned, single
 from rotctl.plain import NOTHING, Way, exchanged, way
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
@@ -38,10 +41,18 @@ class Judged:
 
 @dataclass(frozen=True)
 class Question:
-    """A log, and its config with other criteria."""
+    """A log, its config with other criteria, and metrics to compute."""
 
     log: Path
     config: Mapping[str, Any]
+    metrics: tuple[Expression, ...] = ()
+
+
+class Answer(NamedTuple):
+    """A summary row with its metrics, and why a metric has no value."""
+
+    summary: Summary
+    complaints: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -73,8 +84,11 @@ class Criteria:
         return dict(found)
 
 
-def criteria(overrides: Sequence[str]) -> Criteria:
+def criteria(overrides: Sequence[str], none: bool = False) -> Criteria:
     """What overrides such as `criteria=landing criteria.tilt=20` ask for.
+
+    Args:
+        none: whether there may be none, which are a run's own.
 
     Raises:
         InputError: one is about something else, which would have to be simulated.
@@ -88,19 +102,33 @@ def criteria(overrides: Sequence[str]) -> Criteria:
             changes.append((way(found.key)[1:], found.value))
         else:
             raise InputError(f"{text}: judge takes criteria=CHOICE and criteria.KEY=VALUE alone")
-    if base is None and not changes:
-        raise InputError("no criteria; such as criteria=landing, or criteria.stall_time=2")
+    if base is None and not changes and not none:
+        raise InputError(
+            "no criteria; such as criteria=landing or criteria.stall_time=2, or --metric"
+        )
     return Criteria(base, changes)
 
 
-def answer(question: Question) -> Summary:
-    """The summary row of a logged run by its new criteria.
+def answer(question: Question) -> Answer:
+    """The summary row of a logged run by its new criteria, with its metrics.
 
     Raises:
         LogError: the log cannot be read.
-        InputError: such criteria do not judge such a run.
+        InputError: such criteria do not judge such a run, or a metric has a column's name.
     """
-    return judged_again(RunLog.open(question.log, linked=False), check(dict(question.config)))
+    log = RunLog.open(question.log, linked=False)
+    summary = judged_again(log, check(dict(question.config)))
+    complaints = []
+    for metric in question.metrics:
+        if metric.name in summary:
+            raise InputError(f"metric {metric.name}: there is a column of that name already")
+        try:
+            value = evaluate(metric, log)
+        except InputError as error:
+            value = math.nan
+            complaints.append(str(error))
+        summary[metric.name] = value if math.isfinite(value) else None  # as JSON has it
+    return Answer(summary, tuple(complaints))
 
 
 def judge(
@@ -108,14 +136,17 @@ def judge(
     wanted: Criteria,
     engine: Engine,
     progress: Callable[[], object] = lambda: None,
+    metrics: tuple[Expression, ...] = (),
 ) -> Judged:
     """Judge all runs below a folder that have logs.
 
     Args:
+        metrics: further columns; null in a run where one cannot be computed.
         progress: called after every run.
 
     Raises:
-        InputError: there are none, or none has criteria with such keys.
+        InputError: there are none, none has criteria with such keys, or a metric has no value in
+            any.
     """
     runs, notes = stored_runs(folder)
     asked: list[tuple[StoredRun, Question]] = []
@@ -131,22 +162,29 @@ def judge(
         except InputError as error:
             found[run.run_id] = _without(run, str(error))
             continue
-        asked.append((run, Question(folder / run.log, config)))
+        asked.append((run, Question(folder / run.log, config, metrics)))
     if not asked:
         reasons = [run.reason for run in found.values() if run.reason]
         raise InputError(f"{folder}: no run can be judged: {(reasons or ['none is done'])[0]}")
     before = {run.run_id: bool(run.outcome["success"]) for run, _ in asked}
     questions = [question for _, question in asked]
+    complaints: Counter[str] = Counter()
     with closing(engine.map(answer, questions, retries=2)) as results:
         for index, result in results:
             run = asked[index][0]
             if isinstance(result, Failure):
                 found[run.run_id] = _without(run, result.reason)
             else:
-                found[run.run_id] = replace(run, outcome=result, config=questions[index].config)
+                of = questions[index].config
+                found[run.run_id] = replace(run, outcome=result.summary, config=of)
+                complaints.update(result.complaints)
             progress()
     if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
         raise InputError(f"{folder}: no run can be judged: {found[asked[0][0].run_id].reason}")
+    for complaint, count in complaints.items():
+        if count == len(asked):
+            raise InputError(complaint)
+        notes.append(f"{count} runs: {complaint}")
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
     notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]

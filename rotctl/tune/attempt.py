@@ -7,6 +7,9 @@ from rotctl.behaviours.rolling import RollingSettings
 from rotctl.config import Config
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
+from rotctl.metrics.columns import Arrays
+from rotctl.metrics.evaluation import evaluate
+from rotctl.metrics.expression import Expression
 from rotctl.metrics.judge import judge
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.rotations import dot
@@ -23,11 +26,13 @@ class Attempt:
 
     Attributes:
         columns: of its summary row that the objective looks at.
+        metrics: further ones that may be among them.
     """
 
     config: Config
     stopping: Stopping
     columns: tuple[str, ...] = ()
+    metrics: tuple[Expression, ...] = ()
 
 
 def attempt(item: Attempt) -> TrialRun:
@@ -46,7 +51,7 @@ def attempt(item: Attempt) -> TrialRun:
     buffer, _ = in_memory(scenario, look=hopeless(item.stopping, commanded))
     asked, log = behaviour.commanded, buffer.arrays()
     judged = judge(log, criteria, asked, period, config.duration, scenario.model.mj)
-    found = judged.columns
+    found = judged.columns | {metric.name: _value(metric, log, config) for metric in item.metrics}
     return TrialRun(
         survived=found["duration"],
         wanted=config.duration,
@@ -56,6 +61,16 @@ def attempt(item: Attempt) -> TrialRun:
         success=not judged.reason,
         columns={name: float(found.get(name, nan)) for name in item.columns},
     )
+
+
+def _value(metric: Expression, log: Arrays, config: Config) -> float:
+    """NaN where a run was cut too early for it; what is wrong with a whole run is raised."""
+    try:
+        return evaluate(metric, log)
+    except InputError:
+        if len(log["trajectory/time"]) < round(config.duration * config.controller.rate):
+            return nan
+        raise
 
 
 def hopeless(stopping: Stopping, commanded: float) -> Look:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rotctl.errors import RotctlError
+from rotctl.metrics.expression import read_all
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.tune.attempt import Attempt, attempt
 from rotctl.tune.objective import LOST, TrialRun
@@ -44,7 +45,8 @@ class Evaluator:
         batches = [configs(self.data, values, seeds) for values in candidates]
         places = [(b, i) for b, batch in enumerate(batches) for i in range(len(batch))]
         stopping, columns = self.space.stopping, tuple(self.space.objective.columns)
-        items = [Attempt(batches[b][i], stopping, columns) for b, i in places]
+        metrics = read_all(self.space.objective.metrics)
+        items = [Attempt(batches[b][i], stopping, columns, metrics) for b, i in places]
         results: list[dict[int, TrialRun | Failure]] = [{} for _ in batches]
         following = 0
         for place, result in self.engine.map(attempt, items, RETRIES):

@@ -14,7 +14,7 @@ from rotctl.checked import checked
 from rotctl.errors import InputError
 from rotctl.listing import named_file, named_files
 from rotctl.meant import instead
-from rotctl.metrics import appearance, pace, rolling
+from rotctl.metrics import appearance, expression, pace, rolling
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.key_braces import MOST, expanded
 
@@ -116,13 +116,6 @@ class Wish:
         return min(max(below, above, 0.0) / self.miss, 1.0)
 
 
-def _measured(columns: dict[str, Wish]) -> dict[str, Wish]:
-    for name in columns:
-        if name not in ROLLING:
-            raise ValueError(f"a roll has no column {name!r}; it has: {', '.join(ROLLING)}")
-    return columns
-
-
 @validated(frozen=True, config=STRICT)
 class Objective:
     """Weights of a run's score, and how the scores of runs make that of a candidate.
@@ -135,7 +128,8 @@ class Objective:
         drift: taken off for each metre of lateral drift [1/m].
         heading: taken off for each degree of heading error at the end [1/deg].
         success: on what the config's criteria call a success [-].
-        columns: of the summary row, by name, and what they should be.
+        columns: of the summary row or of `metrics`, by name, and what they should be.
+        metrics: further columns by name, as expressions; see `rotctl.metrics.expression`.
     """
 
     over_runs: Literal["mean", "worst"]
@@ -145,7 +139,22 @@ class Objective:
     drift: NonNegative
     heading: NonNegative
     success: NonNegative = 0.0
-    columns: Annotated[dict[str, Wish], AfterValidator(_measured)] = field(default_factory=dict)
+    columns: dict[str, Wish] = field(default_factory=dict)
+    metrics: dict[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        try:
+            expression.read_all(self.metrics)
+        except InputError as error:
+            raise ValueError(str(error)) from None
+        for name in self.metrics:
+            if name in ROLLING:
+                raise ValueError(f"metric {name}: there is a column of that name already")
+        for name in self.columns:
+            if name not in (*ROLLING, *self.metrics):
+                raise ValueError(
+                    f"a roll has no column {name!r}; it has: {', '.join((*ROLLING, *self.metrics))}"
+                )
 
 
 @validated(frozen=True, config=STRICT)

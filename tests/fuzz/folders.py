@@ -38,7 +38,9 @@ def sweep(rng, samples, here):
     if command == "sweep":
         return Case(["sweep", *samples.overrides, "--out", "d"], simulates=True)
     if command == "judge":
-        return Case(["judge", "d", rng.choice(("criteria.stall_time=1", "criteria=standing"))])
+        own = ["--metric", "m=max(com[:, 2])"]
+        by = rng.choice((["criteria.stall_time=1"], ["criteria=standing"], own))
+        return Case(["judge", "d", *by])
     if command == "by":
         return Case(["summarise", "d", "--by", f"behaviour,{text(rng)}".replace("\0", "?")])
     into = rng.choice((["--out", "o"], ["--out", "d"], []))
