@@ -83,6 +83,10 @@ reproduce: setup ## run all experiments, build the page site/index.html (QUICK=1
 			--out $(REPRODUCE)/$$number-$$study || [ $$? -eq 1 ] || exit; done # 1: a run failed; the page says so
 	$(BIN)/rotctl report $(REPRODUCE) --out site
 
+.PHONY: docs
+docs: setup ## make a site of docs/ with search and a reference: docs/_build/html/index.html
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs docs/_build/html
+
 .PHONY: bench
 bench: setup ## time the control tick
 	$(BIN)/rotctl bench
@@ -97,7 +101,7 @@ lock: $(UV) ## remake requirements.lock from pyproject.toml (hashed, free of ind
 
 .PHONY: clean
 clean: ## remove the environment, caches and builds (runs/, sweeps/ and site/ stay)
-	rm -rf $(VENV) .tools dist build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .tools dist build docs/_build .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 	find rotctl tests experiments -name __pycache__ -type d -prune -exec rm -rf {} + 2>/dev/null || true
 
 # ---------------------------------------------------------------- set-up
