@@ -43,7 +43,8 @@ test: lint ## lint, types, floors, then the fast tests
 	$(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
 .PHONY: readme
-readme: setup ## put what `make run` prints into README.md, after a change that rolls otherwise
+readme: setup ## put what `make run` and the notebook print into them, after a change that rolls otherwise
+	$(BIN)/python tests/cells.py
 	$(BIN)/python tests/readme_sample.py
 
 .PHONY: torture
