@@ -92,6 +92,14 @@ docs: setup ## make a site of docs/ with search and a reference: docs/_build/htm
 bench: setup ## time the control tick
 	$(BIN)/rotctl bench
 
+# placo pins Pinocchio, and Pinocchio an older numpy: they get an environment of their own.
+PEERS = placo==0.10.2 proxsuite==0.8.0 daqp==0.11.0 qpsolvers==4.13.0
+.PHONY: peers
+peers: setup ## time the control step beside placo and Pinocchio, in .tools/peers
+	test -x .tools/peers/bin/python || $(UV) venv --quiet .tools/peers
+	$(UV) pip install --quiet --python .tools/peers/bin/python $(PEERS) --requirements pyproject.toml
+	PYTHONPATH=. .tools/peers/bin/python -c 'from rotctl.bench import peers; print(peers.compare())'
+
 # The old pins are kept where they still fit; `make lock LOCKFLAGS=--upgrade` renews them all.
 .PHONY: lock
 lock: $(UV) ## remake requirements.lock from pyproject.toml (hashed, free of index addresses)
