@@ -60,7 +60,7 @@ def test_a_lying_character_has_the_contacts_asked_for(contacts):
 
 
 def test_costs_are_plotted(tmp_path):
-    costs = [scaling.Cost(m, 29, 10.0 * m, 100.0 * m) for m in scaling.CONTACTS if m]
+    costs = [scaling.Cost(m, 29, 10.0 * m, 20.0 * m, 100.0 * m) for m in scaling.CONTACTS if m]
     scaling.plot(costs, tmp_path / "cost.svg")
     assert (tmp_path / "cost.svg").read_text().startswith("<?xml")
     assert "contacts" in scaling.table(costs)

@@ -132,13 +132,12 @@ def test_what_c_has_not_is_made_in_python(both, overrides):
     assert both(*overrides, "duration=0.1")[1] == 0
 
 
-def test_a_period_whose_solver_fails_is_left_to_the_reference(both):
-    """And C goes on after it."""
-    buffer, made = both("seed=2004", "duration=0.5")
-    reasons = [text for _, text in buffer.events]
-    assert reasons
-    assert all("boxqp" in text for text in reasons)
-    assert buffer.steps - 10 < made < buffer.steps - len(reasons)
+def test_a_period_whose_solver_fails_is_left_to_the_reference(both, monkeypatch):
+    """And C goes on after it; here it is made to doubt good solutions."""
+    monkeypatch.setattr(compiled, "TOLERANCE", 1e-10)
+    buffer, made = both("seed=2004", "duration=1")
+    assert 5 < made < 50
+    assert buffer.events  # the reference's first solver stopped short, too
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """The compiled control step: `native/step.c` on numpy's memory, through ctypes.
 
-Serves the condensed form with boxqp, which is the default.
+Serves the condensed form with boxqp, which is the default. Its programs are solved by an active
+set of our own, to the same minimum: `native/active_set.c`.
 """
 
 import ctypes

@@ -76,13 +76,11 @@ static int solve_pass(Self* s, const Pass* p, const Command* w, int warm, double
       s->Q[i * n + i] += 1 / s->weight[at];
     }
     if (!cholesky(s->Q, n)) return FAILED;
+    double back[ROWS];
     for (int i = 0; i < n; i++) {  // reach becomes L^-1 reach
       double* row = s->reach + i * ld;
-      for (int k = 0; k < i; k++) {
-        double l = s->Q[i * n + k];
-        const double* above = s->reach + k * ld;
-        for (int j = 0; j < ld; j++) row[j] -= l * above[j];
-      }
+      for (int k = 0; k < i; k++) back[k] = -s->Q[i * n + k];
+      add_rows(row, back, s->reach, i, ld, ld);
       for (int j = 0; j < ld; j++) row[j] /= s->Q[i * n + i];
     }
     square(s->H, n3, s->reach, n, n3, ld, 0);

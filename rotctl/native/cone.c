@@ -1,10 +1,11 @@
-// control/cone.py with qp/boxqp.py: one quadratic program with forces in their cone.
+// control/cone.py: one quadratic program with forces in their cone.
 #include "layout.h"
 #include "small.h"
 
 // The scaled program in s->Hs, s->fs between its bounds, from and to s->x.
-static int minimise(Self* s, int n, double* residual) {
-  if (s->mj.boxQP(s->x, s->work, 0, s->Hs, s->fs, n, s->lower, s->upper) < 0) return FAILED;
+static int minimise(Self* s, Free* free, double* residual) {
+  int n = free->n;
+  if (descend(s, free) == FAILED) return FAILED;
   double worst = 0, largest = 0;
   for (int i = 0; i < n; i++) {
     double step = s->x[i] - dot(s->Hs + i * n, s->x, n) - s->fs[i];
@@ -61,12 +62,14 @@ static int solve_cone(Self* s, int head, int m, int warm, double* tau, double* f
     s->x[i] = x < s->lower[i] ? s->lower[i] : x > s->upper[i] ? s->upper[i] : x;
   }
   if (!isfinite(check)) return FAILED;
-  if (minimise(s, n, residual) == FAILED) return FAILED;
+  int at[UNKNOWNS];
+  Free free = {n, 0, at, s->work, s->work + n * n, s->work + n * n + n};
+  if (!begin_free(s, &free) || minimise(s, &free, residual) == FAILED) return FAILED;
   // One proximal step: the addition to the diagonal now holds x near the solution.
   double before = *residual;
   memcpy(s->spare, s->x, sizeof(double) * n);
   for (int i = 0; i < n; i++) s->fs[i] -= c->diagonal * s->x[i];
-  if (minimise(s, n, residual) == FAILED) {
+  if (minimise(s, &free, residual) == FAILED) {
     memcpy(s->x, s->spare, sizeof(double) * n);
     *residual = before;
   }

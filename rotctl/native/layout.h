@@ -8,6 +8,7 @@
 enum { SEEN = 1024, CONTACTS = 64, TASKS = 24, TRUNK = 16, SLOTS = 1024 };
 enum { MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
 enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
+enum { UNKNOWNS = DOFS + 4 * CONTACTS + 1 };
 enum { FAILED = -1, AS_WRITTEN = 0, MODIFIED = 1, NO_SUPERVISOR = 2 };
 
 // MuJoCo's functions, found by Python in the library that it has loaded already.
@@ -15,8 +16,6 @@ typedef struct {
   void (*mulM)(const mjModel*, const mjData*, mjtNum*, const mjtNum*);
   void (*solveM)(const mjModel*, mjData*, mjtNum*, const mjtNum*, int);
   void (*factorM)(const mjModel*, mjData*);
-  int (*boxQP)(mjtNum*, mjtNum*, int*, const mjtNum*, const mjtNum*, int, const mjtNum*,
-               const mjtNum*);
   void (*jac)(const mjModel*, const mjData*, mjtNum*, mjtNum*, const mjtNum*, int);
   void (*jacDot)(const mjModel*, const mjData*, mjtNum*, mjtNum*, const mjtNum*, int);
   void (*applyFT)(const mjModel*, mjData*, const mjtNum*, const mjtNum*, const mjtNum*, int,

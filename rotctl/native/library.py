@@ -15,7 +15,7 @@ NOT_BUILT = (
     "install a C compiler (Debian: apt-get install gcc libc6-dev), then rotctl again"
 )
 FUNCTIONS = (
-    *("mj_mulM", "mj_solveM", "mj_factorM", "mju_boxQP"),
+    *("mj_mulM", "mj_solveM", "mj_factorM"),
     *("mj_jac", "mj_jacDot", "mj_applyFT"),
     *("mj_step1", "mj_step2", "mj_step", "mju_user_error"),
 )

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "layout.h"
+
 // Four running sums: an order that a compiler may carry out four at a time.
 static inline double dot(const double* a, const double* b, int n) {
   double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
@@ -47,15 +49,29 @@ static inline void rotation_to(double* out, const double* start, const double* e
   for (int i = 0; i < 3; i++) out[i] = scale * turn[1 + i];
 }
 
+// out (n) += a (k) times rows (k, n) with leading dimension ld; four rows at a time, as the sums
+// are mostly waited for.
+static inline void add_rows(double* out, const double* a, const double* rows, int k, int n,
+                            int ld) {
+  int r = 0;
+  for (; r + 4 <= k; r += 4) {
+    const double *r0 = rows + r * ld, *r1 = r0 + ld, *r2 = r1 + ld, *r3 = r2 + ld;
+    double a0 = a[r], a1 = a[r + 1], a2 = a[r + 2], a3 = a[r + 3];
+    for (int j = 0; j < n; j++) out[j] += (a0 * r0[j] + a1 * r1[j]) + (a2 * r2[j] + a3 * r3[j]);
+  }
+  for (; r < k; r++)
+    for (int j = 0; j < n; j++) out[j] += a[r] * rows[r * ld + j];
+}
+
 // out (n, n), zero so far, becomes rows' W rows; rows (k, n) with leading dimension ld; no
 // weights are ones.
 static inline void square(double* out, int ld_out, const double* rows, int k, int n, int ld,
                           const double* weight) {
-  for (int r = 0; r < k; r++)
-    for (int i = 0; i < n; i++) {
-      double a = (weight ? weight[r] : 1) * rows[r * ld + i];
-      for (int j = i; j < n; j++) out[i * ld_out + j] += a * rows[r * ld + j];
-    }
+  double column[ROWS];
+  for (int i = 0; i < n; i++) {
+    for (int r = 0; r < k; r++) column[r] = (weight ? weight[r] : 1) * rows[r * ld + i];
+    add_rows(out + i * ld_out + i, column, rows + i, k, n - i, ld);
+  }
   for (int i = 0; i < n; i++)
     for (int j = 0; j < i; j++) out[i * ld_out + j] = out[j * ld_out + i];
 }

@@ -1,4 +1,4 @@
-// One control step of the condensed form with mju_boxQP, in C.
+// One control step of the condensed form, in C.
 //
 // The Python that each file here names is the reference and says what is computed and why. This
 // is the same mathematics on preallocated memory; a test holds both to the same torques. Whatever
@@ -15,6 +15,7 @@
 #include "poses.c"
 #include "stack.c"
 
+#include "active_set.c"
 #include "cone.c"
 #include "condensed.c"
 #include "pgs.c"

@@ -4,6 +4,7 @@ mju_boxQP stops short on about one in a thousand of a roll's problems, and more 
 ground with its many contacts: four edges span three force components, so the Hessian is nearly
 singular. This one takes over there. Each step solves the free variables exactly and goes as far
 as the first bound; where none is met, the variable whose multiplier is most wrong is set free.
+The compiled step has it in C, with a factor that it keeps: there it is the quicker one.
 """
 
 from dataclasses import replace
