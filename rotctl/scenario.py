@@ -12,6 +12,7 @@ import numpy as np
 
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours.similar import similar as asking
 from rotctl.config import Config, to_dict
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similar import similar
@@ -27,6 +28,7 @@ from rotctl.mechanics.terrain import FASTEST
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.settings import ends
+from rotctl.simulation import falling
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
@@ -73,12 +75,14 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     Raises:
         InputError: parts that do not fit together, with one clear line.
     """
-    control = similar(config.controller, gains_likeness(config.character), _kinds_of(config))
+    by = gains_likeness(config.character)
+    control = similar(config.controller, by, _kinds_of(config))
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     apart = config.plant.differs or config.disturbance.changes_model
     model = _varied(config, Variation(config.plant, plant)) if apart else known
     require_fit(config, known)
-    behaviour = config.behaviour.make(known, control, config.excursion)
+    asked = asking(config.behaviour, by)
+    behaviour = asked.make(known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
     controller = controller_of(known, control)
     motors = Motors(model, config.plant.delay)
@@ -96,7 +100,7 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
         senses=senses,
         motors=motors,
         start=starts.draw(
-            config.start,
+            asking(config.start, by, falling.UNITS),
             known,
             config.behaviour.roll_about,
             np.random.default_rng(config.seed),

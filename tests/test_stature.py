@@ -1,14 +1,19 @@
 """Another height, weight and strength: the same motion, slower, by the law of similarity."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
+from rotctl.behaviours.launch import Launch, Whirl
+from rotctl.behaviours.similar import similar as asking
 from rotctl.config import load
 from rotctl.control.similar import similar
 from rotctl.errors import InputError
 from rotctl.mechanics.stature import Likeness, grown, likeness
 from rotctl.run import in_memory, make
 from rotctl.scenario import build, model_of
+from rotctl.simulation import falling
 
 CHILD = ("character.height=1.2", "character.mass=23")
 GIANT = ("character.height=7.0", "character.mass=4480")  # 4 times as tall, 64 times as heavy
@@ -58,13 +63,53 @@ def test_the_first_torques_of_a_giant_are_the_adults_grown(behaviour):
         stops = f"character.limit_solref=[{0.03 * time:g},1.0]"
         config = load([f"behaviour={behaviour}", *still, *other, rate, soft, stops, "duration=0.5"])
         first.append(in_memory(build(config))[0].trajectory.ctrl[0])
-    if behaviour == "forward_roll_1":  # aims of staged behaviours are in metres, and stay
-        assert first[1] == pytest.approx(mass * size * first[0], rel=2e-3, abs=0.05 * mass * size)
-    else:
-        assert not np.allclose(first[1], mass * size * first[0], rtol=0.1)
+    assert first[1] == pytest.approx(mass * size * first[0], rel=2e-3, abs=0.05 * mass * size)
 
 
-@pytest.mark.parametrize("who", [CHILD, ("character.height=2.0", "character.mass=110")])
+TALL = ("character.height=2.0", "character.mass=110")
+
+
+@pytest.mark.parametrize("who", [CHILD, TALL])
+@pytest.mark.parametrize("behaviour", ["stand", "back_flip", "land"])
+def test_who_stands_and_flips_does_so_at_any_height(who, behaviour):
+    """Aims have heights, speeds and times of the body, and so has a start in the air."""
+    seconds = 6 if behaviour == "back_flip" else 3
+    results = [
+        make(load([f"behaviour={behaviour}", *who, f"duration={seconds}", f"seed={seed}"])).summary
+        for seed in (2000, 2001)
+    ]
+    assert any(result["success"] for result in results), [r["failure_reason"] for r in results]
+
+
+def _aims(settings, shape):
+    tasks = [task for stage in settings.stages for task in stage.tasks.values()]
+    return [task.aim for task in tasks if isinstance(task.aim, shape)]
+
+
+def test_what_is_asked_for_has_its_units():
+    by = Likeness(size=4.0, mass=3.0)
+    settings = load(["behaviour=front_flip"]).behaviour
+    found = asking(settings, by)
+    assert asking(settings, Likeness()) is settings
+    (launch, *_), (other, *_) = _aims(settings, Launch), _aims(found, Launch)
+    assert (other.up, other.height) == (2 * launch.up, 4 * launch.height)
+    (whirl, *_), (more, *_) = _aims(settings, Whirl), _aims(found, Whirl)
+    assert (more.most, more.amount) == (3 * 4 * 2 * whirl.most, whirl.amount)  # kg m2/s
+    before, after = (next(x.flight for x in s.stages if x.flight) for s in (settings, found))
+    assert (after.change, after.tuck) == (2 * before.change, before.tuck)
+    start = load(["start=falling"]).start
+    air = asking(start, by, falling.UNITS)
+    assert air.falling.gap == tuple(4 * x for x in start.falling.gap)
+    assert air.falling.momentum == tuple(24 * x for x in start.falling.momentum)
+    assert air.speed_x == start.speed_x
+
+
+def test_units_are_of_fields_that_there_are():
+    for shape, units in falling.UNITS.items():
+        assert set(units) <= {part.name for part in fields(shape)}, shape
+
+
+@pytest.mark.parametrize("who", [CHILD, TALL])
 def test_a_child_and_a_tall_adult_roll(who):
     results = [make(load([*who, "duration=4", f"seed={seed}"])).summary for seed in (2000, 2001)]
     assert all(result["revolutions"] > 1.5 for result in results)

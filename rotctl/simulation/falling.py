@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours import similar
 from rotctl.behaviours.landing import Contact, Landing, LandingSettings
 from rotctl.linear import solve
 from rotctl.mechanics.model import Model
@@ -43,6 +44,15 @@ class FallingSettings:
             raise ValueError(
                 f"speed must be at least {SLOWEST:g} m/s, and may be {self.speed[0]:g}"
             )
+
+
+UNITS = {
+    **similar.UNITS,
+    FallingSettings: similar.all_of(similar.length, "gap", "offset")
+    | similar.all_of(similar.speed, "speed")
+    | similar.all_of(similar.turning, "momentum", "across"),
+}
+"""Of a start in the air, for `rotctl.behaviours.similar`."""
 
 
 @dataclass(frozen=True)

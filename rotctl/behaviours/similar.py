@@ -1,0 +1,117 @@
+"""What a behaviour asks for in metres and seconds, for a body of another size.
+
+A behaviour was made for the body that the controller's gains are for. By the law of
+`rotctl.mechanics.stature` another one has its lengths, times and speeds; shapes, shares and
+commands of a roll are for all the same.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any, TypeVar
+
+from rotctl.behaviours.aims import Ground
+from rotctl.behaviours.balance import Capture, Lunge
+from rotctl.behaviours.finishing import FinishSettings
+from rotctl.behaviours.flight import FlightSettings
+from rotctl.behaviours.landing import LandingSettings
+from rotctl.behaviours.launch import Launch, Lean, Whirl
+from rotctl.behaviours.pacing import PaceSettings
+from rotctl.behaviours.posing import RiseSettings
+from rotctl.behaviours.stages import TaskSettings
+from rotctl.behaviours.stepping import Stepping
+from rotctl.behaviours.until import After, Airborne, Launched, Still
+from rotctl.mechanics.stature import Likeness
+
+T = TypeVar("T")
+Unit = Callable[[Likeness], float]
+Units = Mapping[type, Mapping[str, Unit]]
+
+
+def length(by: Likeness) -> float:
+    """[m]."""
+    return by.size
+
+
+def time(by: Likeness) -> float:
+    """[s]."""
+    return by.time
+
+
+def speed(by: Likeness) -> float:
+    """[m/s]."""
+    return by.size / by.time
+
+
+def rate(by: Likeness) -> float:
+    """[1/s]."""
+    return 1.0 / by.time
+
+
+def turning(by: Likeness) -> float:
+    """Angular momentum [kg m2/s]."""
+    return by.mass * by.size * by.time
+
+
+def all_of(unit: Unit, *names: str) -> dict[str, Unit]:
+    """Fields that have a unit."""
+    return dict.fromkeys(names, unit)
+
+
+UNITS: Units = {
+    After: all_of(time, "seconds"),
+    Airborne: all_of(time, "seconds"),
+    Still: all_of(time, "seconds"),
+    Launched: all_of(speed, "up") | all_of(length, "height"),
+    Ground: all_of(length, "height"),
+    Capture: all_of(length, "margin", "height", "sink", "lunge_margin", "lunge_most")
+    | all_of(speed, "rise"),
+    Lunge: all_of(length, "fade"),
+    Stepping: all_of(length, "margin", "lift", "height", "over", "reach", "width", "aside")
+    | all_of(time, "time")
+    | all_of(speed, "fall"),
+    Lean: all_of(length, "margin", "height", "ahead")
+    | all_of(speed, "speed", "sink")
+    | all_of(rate, "eager", "steady"),
+    Launch: all_of(length, "margin", "height")
+    | all_of(speed, "forward", "up")
+    | all_of(time, "soonest"),
+    Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
+    RiseSettings: all_of(length, "height"),
+    FlightSettings: all_of(time, "opening", "change", "coasting"),
+    LandingSettings: all_of(time, "time") | all_of(length, "most"),
+    PaceSettings: all_of(length, "travel", "ahead") | all_of(rate, "own", "settling"),
+    FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
+}
+"""Of settings, what has a unit that grows; `TaskSettings.point` has one for points."""
+
+
+def similar(settings: T, by: Likeness, units: Units = UNITS) -> T:
+    """The settings for a body of other ratios.
+
+    Args:
+        units: by class of settings, and then by field.
+    """
+    return settings if by.same else _grown(settings, by, units)
+
+
+def _grown(value: Any, by: Likeness, units: Units) -> Any:
+    if isinstance(value, dict):
+        return {name: _grown(inner, by, units) for name, inner in value.items()}
+    if isinstance(value, tuple):
+        return tuple(_grown(inner, by, units) for inner in value)
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    known = units.get(type(value), {})
+    if isinstance(value, TaskSettings) and value.kind == "point":
+        known = {"point": length}
+    made = {}
+    for part in fields(value):
+        before, unit = getattr(value, part.name), known.get(part.name)
+        made[part.name] = _times(before, unit(by)) if unit else _grown(before, by, units)
+    return replace(value, **made)
+
+
+def _times(value: Any, factor: float) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_times(inner, factor) for inner in value)
+    return value if value is None else value * factor
