@@ -353,9 +353,13 @@ def test_what_is_only_looked_at_touches_nothing(tmp_path):
     )
     box = '<geom type="box" size="0.1 0.04 0.03" pos="0.05 0 -0.03" mass="1"/>'
     mesh = '<geom class="seen" mesh="foot" pos="0 0 -0.06" mass="0.5"/>'
-    path, sizes = tmp_path / "robot.xml", []
+    path, lengths = tmp_path / "robot.xml", []
     for shapes in (box + mesh, mesh):
         path.write_text(text().replace(box, shapes).replace("<worldbody>", seen + "<worldbody>"))
         (foot,) = (b for b in adopt(path, "mine").character["bodies"] if b["name"] == "foot")
-        sizes.append([(g["size"], round(g["end"][0] - g["start"][0], 3)) for g in foot["geoms"]])
-    assert sizes == [[(0.03, pytest.approx(0.14))] * 2, [(0.03, pytest.approx(0.34))] * 2]
+        long = [round(g["end"][0] - g["start"][0], 3) for g in foot["geoms"]]
+        lengths.append([(g["mass"] > 0, x) for g, x in zip(foot["geoms"], long, strict=True)])
+    assert lengths == [
+        [(True, 0.14), (True, 0.14), (False, 0.34), (False, 0.34)],
+        [(True, 0.34), (True, 0.34)],
+    ]
