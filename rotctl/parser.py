@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from rotctl import __version__
-from rotctl.commands import clips, folders, logs, runs, studies
+from rotctl.commands import clips, completion, folders, logs, runs, studies
 from rotctl.errors import bounded
 from rotctl.meant import instead, meant
 from rotctl.wording import one_line
@@ -33,6 +33,7 @@ examples:
   rotctl export runs/<run id>/run.h5 --to gltf    for Blender, viewers, trackers, simulators
   rotctl verify runs/<run id>/run.h5              run it again: the same bits?
   rotctl import-motion roll.bvh --out roll.yaml   a captured roll as a reference clip
+  source <(rotctl completion bash)                the tab key completes commands, choices, keys
 
 exit codes: 0 simulated (a roll that stalls is a result: success false), 1 the physics or
 the solver broke down, a run of a sweep could not be run or its scheduler is gone, a log does not
@@ -53,6 +54,7 @@ COMMANDS = (
     *(logs.add_inspect, logs.add_verify, runs.add_bench),
     *(studies.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
     *(studies.add_tune, clips.add_import, clips.add_author, clips.add_preview),
+    completion.add_completion,
 )
 NO_LOG = "an unfinished run leaves no log"
 
@@ -107,7 +109,7 @@ def _parser() -> argparse.ArgumentParser:
     for command in chosen.choices.values():
         _add_config_dir(command, argparse.SUPPRESS)  # before or after the command's name
         interrupted = command.get_default("interrupted") or NO_LOG
-        command.set_defaults(parser=command, interrupted=interrupted)
+        command.set_defaults(parser=command, commands=chosen.choices, interrupted=interrupted)
     return parser
 
 

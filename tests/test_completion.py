@@ -1,0 +1,101 @@
+"""What the tab key completes."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rotctl.cli import main
+from rotctl.listing import choices, named_files
+from rotctl.parser import COMMANDS
+
+ROLLS = [name for name in choices("behaviour") if name.startswith("forward_roll")]
+
+
+def words(line, capsys):
+    assert main(["completion", "words", line]) == 0
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("line", "wanted"),
+    [
+        ("rotctl summ", ["summarise"]),
+        ("rotctl --ver", ["--version"]),
+        ("rotctl run --filmstrip --fo", ["--force"]),
+        ("rotctl run behaviour=forward_roll", [f"behaviour={name}" for name in ROLLS]),
+        ("rotctl --config-dir conf run start=re", ["start=rest"]),
+        ("rotctl run con", ["controller.", "controller="]),
+        ("rotctl run controller.po", ["controller.pose."]),
+        ("rotctl show controller.pose.w", ["controller.pose.weight="]),
+        ("rotctl run behaviour=back_flip behaviour.shap", ["behaviour.shape="]),
+        ("rotctl run behaviour.shap", []),
+        ("rotctl run +fi", ["+finish="]),
+        ("rotctl run +finish=", ["+finish=stand"]),
+        ("rotctl run +exp", []),
+        ("rotctl sweep +exp", ["+experiment="]),
+        ("rotctl sweep +experiment=tab", ["+experiment=table1"]),
+        ("rotctl run behaviour.reference.clip=back", ["behaviour.reference.clip=backward_roll"]),
+        ("rotctl export runs/a/run.h5 --to g", ["gltf"]),
+        ("rotctl new beh", ["behaviour"]),
+        ("rotctl new behaviour mine --from back_", ["back_flip"]),
+        ("rotctl tune clip_t", ["clip_terrain"]),
+        ("rotctl completion f", ["fish"]),
+        ("rotctl render ", []),  # a file: the shell's own business
+        ("rotctl sweep 'seed=range(0,", []),
+        ("rotctl run nobody.knows.", []),
+        ("rotctl run behaviour=nobody behaviour.", []),
+        ("rotctl nobody ", None),  # any command
+    ],
+)
+def test_words_that_can_follow(line, wanted, capsys):
+    found = words(line, capsys)
+    assert found == wanted if wanted is not None else len(found) == len(COMMANDS)
+
+
+def test_every_command_and_every_choice_can_follow(capsys):
+    assert len(words("rotctl ", capsys)) == len(words("", capsys)) == len(COMMANDS)
+    found = words("rotctl sweep +experiment=", capsys)
+    assert found == [f"+experiment={name}" for name in sorted(named_files("experiments"))]
+
+
+def test_a_file_of_ones_own_is_among_them_and_a_wrong_one_spoils_nothing(
+    capsys, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "behaviour", "mine", "--from", "stand"]) == 0
+    capsys.readouterr()
+    assert words("rotctl run behaviour=mi", capsys) == ["behaviour=mine"]
+    (tmp_path / "conf" / "behaviour" / "mine.yaml").write_text("a: [")
+    assert words("rotctl run behaviour=mine behaviour.", capsys) == []
+    assert words("rotctl run behaviour=mi", capsys) == ["behaviour=mine"]
+
+
+SAID = {
+    "bash": "source <(rotctl completion bash); COMP_LINE='{0}'; COMP_POINT={1}; _rotctl; "
+    'printf "%s\\n" "${{COMPREPLY[@]}}"',
+    "fish": "rotctl completion fish | source; complete -C '{0}'",
+}
+
+
+@pytest.mark.parametrize("shell", SAID)
+@pytest.mark.parametrize(
+    ("line", "wanted"),
+    [("rotctl summ", "summarise"), ("rotctl run behaviour=back_f", "behaviour=back_flip")],
+)
+def test_the_scripts_ask_for_them(shell, line, wanted):
+    if shutil.which(shell) is None:
+        pytest.skip(f"no {shell} here")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [shell, "-c", SAID[shell].format(line, len(line))],
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    cut = "=" in wanted and shell == "bash"  # which puts in what comes after a `=`
+    assert done.stdout.split() == [wanted.partition("=")[2] if cut else wanted]
