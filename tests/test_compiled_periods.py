@@ -76,6 +76,7 @@ PACED = ("behaviour=forward_roll", "duration=2", "seed=2003")
         (*PACED, "behaviour.pace.keep=speed", "behaviour.pace.over=[foot_l,shin]"),
         (*PACED, "behaviour.pace.schedule=[[0.5,0.3],[1.0,1.2]]"),
         ("excursion=integral", "duration=1"),
+        ("behaviour.poses.a.knee=[1.9,0.1,-0.2,0.1,0.1,-0.05,0.07]", "duration=1"),
         ("behaviour.angular_momentum=30", "duration=1"),
         ("controller.supervisor=modified", "duration=1"),
         ("physics.contact_capacity=2", "duration=1"),

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.motion import Poses, make_pose_pair
 
@@ -65,3 +66,23 @@ def test_shapes(world):
     pair = make_pose_pair(world.model, Poses({}, {}))
     assert pair.at(0.0).shape == (2, len(world.model.joint_names))
     assert np.array_equal(pair.low, world.model.joint_range[:, 0])
+
+
+def test_waves_of_multiples_of_the_phase(world):
+    """Beside shorter ones, in Python; and in C, which a roll looks its poses up in."""
+    waves = (0.6, 0.1, -0.2, 0.05, 0.1, -0.1, 0.02)
+    pair = make_pose_pair(world.model, Poses({"elbow": waves, "knee": (0.9, 0.1, 0.2)}))
+    for phase in (-2.0, 0.7, 4.0):
+        elbow = waves[0] + sum(
+            waves[2 * n - 1] * math.cos(n * phase) + waves[2 * n] * math.sin(n * phase)
+            for n in (1, 2, 3)
+        )
+        assert value(world.model, pair.at(phase)[0], "elbow_r") == pytest.approx(elbow, abs=1e-12)
+        knee = 0.9 + 0.1 * math.cos(phase) + 0.2 * math.sin(phase)
+        assert value(world.model, pair.at(phase)[1], "knee_l") == pytest.approx(knee, abs=1e-12)
+
+
+@pytest.mark.parametrize("angle", ["[1,2]", "[1,2,3,4]", "[0,0,0,0,0,0,0,0,0,0,0]"])
+def test_a_mean_and_pairs_and_nothing_else(angle):
+    with pytest.raises(InputError):
+        load([f"behaviour.poses.a.knee={angle}"])

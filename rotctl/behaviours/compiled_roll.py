@@ -62,6 +62,8 @@ class CompiledRoll:
         names: tuple[str, ...] = ("coefficients", "low", "high")
         if isinstance(poses, ReferencePair):
             constants.rows, names = len(poses.table), ("table", "rise")
+        else:
+            constants.waves = poses.coefficients.shape[1]
         for name in names:
             setattr(constants, name, self._at(np.ascontiguousarray(getattr(poses, name))))
 

@@ -14,7 +14,7 @@ from rotctl.control.supervisor import SupervisorName
 from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
-from rotctl.motion.sides import exchanged, mirrored_angles
+from rotctl.motion.sides import exchanged, mirrored_angles, other_side
 from rotctl.settings import STRICT, NonNegative, Vector
 
 
@@ -115,7 +115,11 @@ def mirrored(stage: Stage, model: Model) -> Stage:
 def _over_phase(model: Model, pose: Mapping[str, Angle]) -> dict[str, Angle]:
     """A pose over a phase that runs the other way."""
     full = {name: a if isinstance(a, tuple) else (a, 0.0, 0.0) for name, a in pose.items()}
-    mean, cosine, sine = (
-        mirrored_angles(model, {name: a[i] for name, a in full.items()}) for i in range(3)
-    )
-    return {name: (mean[name], cosine[name], -sine[name]) for name in mean}
+    signs = mirrored_angles(model, dict.fromkeys(full, 1.0))
+    return {
+        name: tuple(
+            sign * (-wave if i and i % 2 == 0 else wave)  # sines turn round
+            for i, wave in enumerate(full[other_side(name)])
+        )
+        for name, sign in signs.items()
+    }

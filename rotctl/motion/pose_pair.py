@@ -1,8 +1,9 @@
 """Two key poses r_a and r_b, constant or varying with the phase of a cycle.
 
 Each joint of a pose is a number [rad], or (mean, cosine, sine) [rad] over the phase theta:
-mean + cosine cos(theta) + sine sin(theta). A joint name without a side stands for both
-sides; joints not named are held at 0. A pose is clipped to the joints' ranges.
+mean + cosine cos(theta) + sine sin(theta); cosine and sine of twice the phase may follow, and so
+on. A joint name without a side stands for both sides; joints not named are held at 0. A pose is
+clipped to the joints' ranges.
 """
 
 from collections.abc import Mapping
@@ -11,15 +12,25 @@ from math import cos, sin
 from typing import Annotated
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
+from rotctl.native.layout import constant
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Finite
 
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
-Angle = Turn | tuple[Turn, Turn, Turn]
+
+
+def _pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
+    if len(waves) % 2 == 0:
+        raise ValueError(f"must be a mean with pairs of cosine and sine, not {len(waves)} numbers")
+    return waves
+
+
+Waves = Annotated[tuple[Turn, ...], Field(min_length=3, max_length=constant("WAVES"))]
+Angle = Turn | Annotated[Waves, AfterValidator(_pairs_after_a_mean)]
 
 
 @validated(frozen=True, config=STRICT)
@@ -35,7 +46,8 @@ class PosePair:
     """The two poses of blend tracking, [Brown2013] section 4.3.
 
     Attributes:
-        coefficients: (2, 3, nu) mean, cosine and sine of pose a and pose b [rad].
+        coefficients: (2, n, nu) mean, cosine and sine of pose a and pose b, and of multiples of
+            the phase [rad].
         low, high: (nu,) joint ranges [rad].
     """
 
@@ -49,7 +61,9 @@ class PosePair:
 
     def at(self, phase: float) -> Array:
         """Both poses (2, nu) [rad] at a phase [rad]."""
-        poses = np.einsum("c,pcj->pj", [1.0, cos(phase), sin(phase)], self.coefficients)
+        turns = range(1, self.coefficients.shape[1] // 2 + 1)
+        waves = [1.0, *(wave(n * phase) for n in turns for wave in (cos, sin))]
+        poses = np.einsum("c,pcj->pj", waves, self.coefficients)
         return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
 
 
@@ -59,12 +73,11 @@ def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> 
     Raises:
         InputError: a name is no joint of the model.
     """
+    pairs = (poses.a, "a"), (poses.a if poses.b is None else poses.b, "b")
+    waves = max((len(_waves(angle)) for pose, _ in pairs for angle in pose.values()), default=3)
     return PosePair(
         coefficients=np.array(
-            [
-                _coefficients(model, pose, f"{key}.{name}")
-                for pose, name in ((poses.a, "a"), (poses.a if poses.b is None else poses.b, "b"))
-            ]
+            [_coefficients(model, pose, waves, f"{key}.{name}") for pose, name in pairs]
         ),
         low=model.joint_range[:, 0],
         high=model.joint_range[:, 1],
@@ -83,9 +96,11 @@ def make_pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     )
 
 
-def _coefficients(model: Model, pose: Mapping[str, Angle], key: str) -> Array:
-    waves = {
-        name: (angle, 0.0, 0.0) if isinstance(angle, float | int) else angle
-        for name, angle in pose.items()
-    }
-    return model.posed(waves, key, 3)
+def _coefficients(model: Model, pose: Mapping[str, Angle], waves: int, key: str) -> Array:
+    full = {name: _waves(angle) for name, angle in pose.items()}
+    padded = {name: (*angle, *[0.0] * (waves - len(angle))) for name, angle in full.items()}
+    return model.posed(padded, key, waves)
+
+
+def _waves(angle: Angle) -> tuple[float, ...]:
+    return angle if isinstance(angle, tuple) else (angle, 0.0, 0.0)

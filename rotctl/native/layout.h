@@ -5,7 +5,7 @@
 
 #include <mujoco/mujoco.h>
 
-enum { SEEN = 1024, CONTACTS = 64, TASKS = 24, TRUNK = 16, SLOTS = 1024 };
+enum { SEEN = 1024, CONTACTS = 64, TASKS = 24, TRUNK = 16, SLOTS = 1024, WAVES = 9 };
 enum { MOTION_ROWS = 96, FORCES = 3 * CONTACTS };
 enum { ROWS = FORCES + MOTION_ROWS, MOMENTA = 3 * TASKS, ROOT = 6, DOFS = 256 };
 enum { UNKNOWNS = DOFS + 4 * CONTACTS + 1 };
@@ -103,11 +103,11 @@ typedef struct {
 } Pace;
 
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
-// `coefficients` (2, 3, nu); its two tasks are where the command has them.
+// `coefficients` (2, waves, nu); its two tasks are where the command has them.
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
-  int column, integral, rows;
+  int column, integral, rows, waves;
   const double *table, *rise, *coefficients, *low, *high;
   const Pace* pace;
   Task* task;

@@ -51,11 +51,14 @@ static void poses_at(const Roll* r, double phase, int nu, double* a, double* b) 
         pose[p][i] = from[p * nu + i] + (place - row) * rise[p * nu + i];
     return;
   }
-  double cosine = cos(phase), sine = sin(phase);
+  double wave[WAVES] = {1};
+  for (int n = 1; 2 * n < r->waves; n++)
+    wave[2 * n - 1] = cos(n * phase), wave[2 * n] = sin(n * phase);
   for (int p = 0; p < 2; p++) {
-    const double* mean = r->coefficients + 3 * p * nu;
+    const double* rows = r->coefficients + r->waves * p * nu;
     for (int i = 0; i < nu; i++) {
-      double angle = mean[i] + cosine * mean[nu + i] + sine * mean[2 * nu + i];
+      double angle = rows[i];
+      for (int n = 1; n < r->waves; n++) angle += wave[n] * rows[n * nu + i];
       pose[p][i] = fmin(fmax(angle, r->low[i]), r->high[i]);
     }
   }
