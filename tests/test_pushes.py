@@ -125,6 +125,15 @@ def test_nothing_is_withstood_where_the_least_is_too_much():
     assert [pushes.withstood(shares).max() for shares in found.values()] == [0.0, 0.0]
 
 
+def test_the_phases_that_are_overcome_least_and_most_are_told():
+    rows = runs(lambda b, impulse, way, seed: seed % 4 > 0).rows
+    assert pushes.said_of_phases(rows) == ""
+    assert pushes.said_of_phases(rows.assign(**{pushes.PHASE: "[0, 360]"})) == ""
+    assert pushes.said_of_phases(rows.assign(**{pushes.PHASE: 45.0 * (rows["seed"] % 4)})) == (
+        " Over all, 0 % are overcome that come at a phase of 0\u00b0, 100 % at 45\u00b0."
+    )
+
+
 def test_the_map_is_among_the_charts_of_a_sweep():
     (chart,) = [c for c in charts(grid(runs(lambda *_: True))) if c.name == "pushes"]
     assert Xml.fromstring(chart.light).tag.endswith("svg")

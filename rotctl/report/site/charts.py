@@ -101,12 +101,13 @@ def charts(found: Grid) -> list[Chart]:
     if {pushes.DIRECTION, pushes.IMPULSE} <= set(found.axes) and pushes.RECOVERED in runs:
         pushed = pushes.maps(runs, found.others)
         if 0 < len(pushed) <= MOST_PANELS:
+            told = pushes.said(pushed) + pushes.said_of_phases(runs)
             made.append(
                 _chart(
                     "pushes",
                     "Runs that roll on after a push, by its direction and its impulse [N s]. "
-                    + pushes.said(pushed),
-                    f"Polar maps of recovery. {pushes.said(pushed)}",
+                    + told,
+                    f"Polar maps of recovery. {told}",
                     (_WIDTH, 0.5 + 3.2 * -(-len(pushed) // 3)),
                     lambda figure, _: pushes.draw(figure, pushed),
                 )

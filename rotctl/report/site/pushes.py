@@ -10,6 +10,7 @@ from rotctl.report.site.grid import labels
 from rotctl.report.site.words import number
 
 DIRECTION, IMPULSE = "disturbance.direction", "disturbance.impulse"
+PHASE = "disturbance.phase"
 RECOVERED = "recovered"
 ENOUGH = 0.95  # of the runs with an impulse
 
@@ -40,6 +41,21 @@ def said(found: dict[str, pd.DataFrame]) -> str:
         way = number(float(str(least.idxmin())))
         parts.append(f"{name}: {worst} ({way}\u00b0), {number(least.median())} in the median one")
     return f"{100 * ENOUGH:.0f} % recover up to, {'; '.join(parts)}."
+
+
+def said_of_phases(runs: pd.DataFrame) -> str:
+    """At which phase of the motion a push is overcome least, and most; empty without phases."""
+    if PHASE not in runs:
+        return ""
+    phase = pd.to_numeric(runs[PHASE], errors="coerce")  # a range that is drawn from is no number
+    shares = pd.to_numeric(runs[RECOVERED]).groupby(phase).mean().dropna()
+    if len(shares) < 2:
+        return ""
+    least, most = float(str(shares.idxmin())), float(str(shares.idxmax()))
+    return (
+        f" Over all, {100 * shares.min():.0f} % are overcome that come at a phase of "
+        f"{number(least)}\u00b0, {100 * shares.max():.0f} % at {number(most)}\u00b0."
+    )
 
 
 def draw(figure: Any, found: dict[str, pd.DataFrame]) -> None:
