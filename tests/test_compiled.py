@@ -116,6 +116,18 @@ def test_heels_are_held_out_alike():
     assert held_out > 20
 
 
+def test_contacts_of_limbs_that_turn_fast_are_held_alike():
+    """Who stands, pushed, with the accelerations that the limbs' turning gives contacts."""
+    asked = ["seed=2", "behaviour=stand", "disturbance=push"]
+    found = []
+    for centripetal in (True, False):
+        config = load([*asked, f"controller.contact.centripetal={str(centripetal).lower()}"])
+        for step in along(build(config), 90):
+            assert step.fast.torque == pytest.approx(step.slow.torque, abs=100.0 * EXACT)
+        found.append(step.slow.torque)
+    assert np.abs(found[0] - found[1]).max() > 1e-3  # [N m]
+
+
 @pytest.mark.parametrize(
     "overrides",
     [

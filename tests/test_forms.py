@@ -141,6 +141,38 @@ def test_literal_momentum_matrix(world, steps):
         assert np.abs(found[3:] - angular).max() < 1e-10
 
 
+def test_contacts_keep_still_though_limbs_turn(world, supported):
+    """With `centripetal` they get the accelerations that are wanted, by differences of velocity."""
+    rng, tiny, most = np.random.default_rng(1), 1e-5, 0.0
+    for step in supported[::8]:
+        command = weighed(step.command)
+        counting = replace(command.contact, centripetal=True)
+        state, stack = world.stack(step, command._replace(contact=counting))
+        _, plain = world.stack(step, command)
+        bodies = state.contacts.body[command.candidates(state)]
+        places = state.contacts.position[command.candidates(state)]
+        rates = 10 * rng.normal(size=world.mj.nv)
+        gained = np.zeros((len(bodies), 3))
+        for h in (-tiny, tiny):
+            moved = step.position.copy()
+            change = step.velocity * h + 0.5 * rates * h**2
+            mujoco.mj_integratePos(world.mj, moved, change, 1.0)
+            data = world.data(moved, step.velocity + h * rates)
+            for i, (body, place) in enumerate(zip(bodies, places, strict=True)):
+                turn = state.data.xmat[body].reshape(3, 3)
+                own = turn.T @ (place - state.data.xpos[body])  # the body's point that touches
+                now = data.xpos[body] + data.xmat[body].reshape(3, 3) @ own
+                jacobian = np.zeros((3, world.mj.nv))
+                mujoco.mj_jac(world.mj, data, jacobian, None, now, body)
+                gained[i] += np.sign(h) * (jacobian @ data.qvel) / (2 * tiny)
+        along = np.einsum("mij,mj->mi", stack.frame, gained).ravel()
+        assert stack.jacobian @ rates - stack.wanted[: len(along)] == pytest.approx(
+            along - plain.wanted[: len(along)], abs=1e-4
+        )
+        most = max(most, np.abs(stack.wanted - plain.wanted).max())
+    assert most > 1.0  # [m/s2]
+
+
 # ---------------------------------------------------------------- the condensed form equals it
 
 

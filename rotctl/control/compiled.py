@@ -224,6 +224,7 @@ class CompiledStep:
         given.pose_weight, given.blend_weight = pose.weight, pose.blend
         given.contact_damping, given.contact_weight = contact.damping, contact.weight
         given.contact_force = contact.force
+        given.contact_centripetal = contact.centripetal
         given.threshold_force, given.threshold_torque = thresholds.force, thresholds.torque
         given.threshold_separation = thresholds.separation
 

@@ -59,11 +59,14 @@ class ContactGains:
             control period, which is the paper's wish.
         weight: on the acceleration's distance from that [1/(m/s2)2].
         force: on the contact forces, makes them unique [1/N2].
+        centripetal: whether the acceleration that the limbs' own turning gives a contact, Jdot
+            qdot, is reckoned with; in a roll it is small, in a jump it lifts the toes.
     """
 
     damping: Positive
     weight: NonNegative
     force: Positive
+    centripetal: Annotated[bool, Strict()] = False
 
 
 @validated(frozen=True, config=STRICT)

@@ -10,6 +10,7 @@ apart, as contact forces alone meet them. With M qddot + C = S' tau + J' lambda,
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -166,6 +167,8 @@ def collect(
     fade = min(command.contact.damping, settings.rate)
     stop = -fade * product(jacobian, state.velocity)
     stop[::3] -= fade * fade * np.maximum(state.contacts.gap[keep], 0.0)
+    if command.contact.centripetal:
+        stop -= _centripetal(model, state, frame, keep)
     tasks = _evaluate(command, model, state)
     motion = [task.rows for task in tasks if not task.momentum]
     momentum = [task.rows for task in tasks if task.momentum]
@@ -232,6 +235,19 @@ def _along(
             one, two = array[1].copy(), array[2].copy()
             array[1], array[2] = c * one + s * two, c * two - s * one
     return frame, jacobian
+
+
+def _centripetal(model: Model, state: State, frame: Array, keep: NDArray[np.bool_]) -> Array:
+    """Jdot qdot of contacts (3m,), along the rows of their frames (m, 3, 3) [m/s2].
+
+    Of the points of the body that touch: a sole that rolls on a radius r gains omega^2 r less.
+    """
+    found, moving = np.zeros((len(frame), 3)), np.zeros((3, model.mj.nv))
+    bodies, places = state.contacts.body[keep], state.contacts.position[keep]
+    for i, (body, place) in enumerate(zip(bodies.tolist(), places, strict=True)):
+        mujoco.mj_jacDot(model.mj, state.data, moving, None, place, body)
+        found[i] = product(frame[i], product(moving, state.velocity))
+    return found.ravel()
 
 
 def _evaluate(command: Command, model: Model, state: State) -> tuple[TaskRows, ...]:

@@ -62,7 +62,7 @@ typedef struct {
   double pose_stiffness, pose_damping, pose_horizon, pose_weight, blend_weight;
   double contact_damping, contact_weight, contact_force;
   double threshold_force, threshold_torque, threshold_separation;
-  int supervisor, pose_explicit, tasks;
+  int supervisor, pose_explicit, contact_centripetal, tasks;
   const Task* task;
   double *pose_a, *pose_b;
   const unsigned char* held_out;

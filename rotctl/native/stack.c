@@ -62,6 +62,16 @@ static int collect_tasks(Self* s, const mjData* d, const Reading* r, const Comma
   return 1;
 }
 
+// Takes Jdot qdot of a contact, along its frame F, from what is wanted of it.
+static void turn_with(const Self* s, const mjData* d, const Reading* r, int contact,
+                      const double* F, double* wanted) {
+  int nv = s->nv;
+  double moving[3 * DOFS], a[3];
+  s->mj.jacDot(s->m, d, moving, 0, r->position[contact], r->body[contact]);
+  for (int i = 0; i < 3; i++) a[i] = dot(moving + i * nv, d->qvel, nv);
+  for (int i = 0; i < 3; i++) wanted[i] -= dot(F + 3 * i, a, 3);
+}
+
 // Rows of k candidate contacts, then of the tasks; returns how many there are, or FAILED.
 static int collect(Self* s, mjData* d, const Reading* r, const int* contact, int k,
                    const Command* w, Answer* out) {
@@ -80,6 +90,7 @@ static int collect(Self* s, mjData* d, const Reading* r, const int* contact, int
       s->weight[3 * i + a] = w->contact_weight;
     }
     s->wanted[3 * i] -= damping * damping * fmax(r->gap[contact[i]], 0);
+    if (w->contact_centripetal) turn_with(s, d, r, contact[i], s->frame[i], s->wanted + 3 * i);
   }
   if (collect_tasks(s, d, r, w, m3, out) == FAILED) return FAILED;
   int n = m3 + s->motion_rows;
