@@ -24,7 +24,8 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
-from rotctl.mechanics.terrain import FASTEST
+from rotctl.mechanics.terrain import FASTEST, Basin
+from rotctl.mechanics.water import Water
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.settings import ends
@@ -93,7 +94,7 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
         model=model,
         known=known,
         behaviour=behaviour,
-        disturbance=config.disturbance.make(model, behaviour.axes, generator),
+        disturbance=_outside(model, config.disturbance.make(model, behaviour.axes, generator)),
         controller=controller,
         observer=controller if senses.exact else Controller(model, control),
         stepper=_stepper(config.physics, model),
@@ -107,6 +108,12 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
         ),
         run_id=run_id(config, known),
     )
+
+
+def _outside(model: Model, disturbance: Disturbance) -> Disturbance:
+    """What acts from outside: the disturbance, and water where there is some."""
+    pool = model.ground
+    return Water(model.mj, pool, disturbance) if isinstance(pool, Basin) else disturbance
 
 
 def _kinds_of(config: Config) -> dict[str, str]:

@@ -136,6 +136,11 @@ CASES = {
         seconds=0.8,
     ),
     "stairs": Case(("terrain=stairs_down", "terrain.run_in=0.3"), r"terrain\..*", seconds=1.2),
+    "water": Case(
+        ("terrain=pool", "terrain.height=0.3", "terrain.edge=0.05"),  # who rolls off the edge
+        r"terrain\..*",
+        seconds=1.2,
+    ),
     "hazards": Case(
         ("terrain=hazards", "terrain.run_in=0", "terrain.spacing=0.4", "seed=3"),
         r"terrain\..*",

@@ -20,7 +20,13 @@ BOTTOM_COLOUR = (0.55, 0.76, 0.84, 1.0)
 
 @validated(frozen=True, config=STRICT)
 class Pool:
-    """A platform `height` [m] above water `depth` [m] deep, that ends `edge` [m] ahead."""
+    """A platform `height` [m] above water `depth` [m] deep, that ends `edge` [m] ahead.
+
+    Attributes:
+        density: of the water, and
+        body: of whoever falls into it [kg/m3].
+        drag, ends: coefficients of limbs across the flow, and along their length [-].
+    """
 
     name: str
     seeded: ClassVar[bool] = False
@@ -30,11 +36,24 @@ class Pool:
     height: Annotated[Positive, Field(le=30)]
     depth: Annotated[Positive, Field(le=30)]
     edge: Annotated[Positive, Field(le=5)]
+    density: Annotated[Positive, Field(le=2000)]
+    body: Annotated[Positive, Field(ge=500, le=2000)]
+    drag: Annotated[Positive, Field(le=5)]
+    ends: Annotated[Positive, Field(le=5)]
     description: str = ""
 
     def make(self, generator: np.random.Generator, reach: float) -> "Basin":
         """The ground of one run."""
-        return Basin(self.friction, self.height, self.depth, self.edge)
+        return Basin(
+            friction=self.friction,
+            drop=self.height,
+            depth=self.depth,
+            edge=self.edge,
+            density=self.density,
+            body=self.body,
+            drag=self.drag,
+            ends=self.ends,
+        )
 
 
 @dataclass(frozen=True)
@@ -45,6 +64,10 @@ class Basin:
     drop: float
     depth: float
     edge: float
+    density: float
+    body: float
+    drag: float
+    ends: float
     slope: float = 0.0
     extent: Extent = EVERYWHERE
 
