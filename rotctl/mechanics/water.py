@@ -50,6 +50,11 @@ class Water:
         self._limbs = [limb for limb in found if limb]
         self._mj = mj
 
+    @property
+    def remark(self) -> str:
+        """Of what disturbs besides."""
+        return self._besides.remark
+
     def apply(self, data: mujoco.MjData, period: float, phase: float) -> Array:
         """See `Disturbance`."""
         data.xfrc_applied[:] = 0.0
