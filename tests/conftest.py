@@ -89,8 +89,10 @@ class World:
         command, settings = command or step.command, settings or self.settings
         state, poses = self.state(step), np.array((command.pose_a, command.pose_b))
         tracker = PoseTracker(self.model, 1.0 / settings.rate)
-        torques = tracker.torques(state, poses, command.pose)
-        return state, collect(self.model, state, command, settings, torques, step.blend)
+        torques, towards = tracker.torques(state, poses, command.pose), None
+        if settings.tracking == "acceleration":
+            towards = tracker.accelerations(state, poses, command.pose)
+        return state, collect(self.model, state, command, settings, torques, step.blend, towards)
 
     def in_the_air(self, seed=0, speed=1.0):
         """A random posture and velocity, high above the ground: (qpos, qvel)."""

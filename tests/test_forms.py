@@ -199,6 +199,37 @@ def test_condensed_equals_literal_over_kept_contacts(world, supported):
         assert_same(part, condensed.solve(part, BoxQP()), expected)
 
 
+@pytest.mark.parametrize("share", [1.0, 0.3])
+def test_poses_by_acceleration_are_the_same_in_both_forms(world, supported, share):
+    """With and without binding limits."""
+    settings, blends = replace(world.settings, tracking="acceleration"), []
+    for step in supported[::6]:
+        command = weighed(step.command, pose=1e-3)
+        state, stack = world.stack(step, command, settings)
+        stack = replace(stack, torque_limit=share * stack.torque_limit)
+        found = condensed.solve(stack, make_solver("qpsolvers:daqp"))
+        assert_same(stack, found, literal_answer(world, stack, state))
+        blends.append(found.blend)
+    assert np.ptp(blends) > 0.1
+
+
+def test_heavy_poses_by_acceleration_are_what_the_joints_do(world, supported):
+    """The blend of both springs, each solved for the end of the period, whatever the contacts."""
+    settings = replace(world.settings, tracking="acceleration")
+    for step in supported[::12]:
+        command = weighed(step.command, 1e-9, 1e-9, 1e-9, pose=1e3)
+        state, stack = world.stack(step, command, settings)
+        stack = replace(stack, torque_limit=1e6 * stack.torque_limit)
+        found = condensed.solve(stack, make_solver("qpsolvers:daqp"))
+        joints, h = world.model.joints, max(command.pose.horizon, stack.period)
+        moves = dynamics(world, stack, state, found.torque, found.force)[joints]
+        blended = found.blend * command.pose_a + (1 - found.blend) * command.pose_b
+        velocity = state.velocity[joints]
+        away = blended - state.position[7:] - h * velocity
+        expected = command.pose.stiffness * away - command.pose.damping * (velocity + h * moves)
+        assert moves == pytest.approx(expected, abs=1e-3 * np.abs(moves).max())
+
+
 @pytest.mark.parametrize("share", [0.5, 0.15])
 @pytest.mark.parametrize(("solver", "tolerance"), [("boxqp", TORQUE), ("qpsolvers:daqp", EXACT)])
 def test_binding_torque_limits(world, supported, share, solver, tolerance):

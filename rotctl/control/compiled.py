@@ -61,6 +61,7 @@ def serves(settings: ControllerSettings, model: Model) -> bool:
         settings.solver == "boxqp"
         and settings.supervisor in SUPERVISORS
         and settings.form == "condensed"
+        and settings.tracking == "force"
         and model.mj.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         and len(model.trunk) <= constant("TRUNK")
     )

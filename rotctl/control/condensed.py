@@ -95,15 +95,17 @@ def _full(stack: Stack, solver: Solver, start: Array | None) -> Answer:
     difference = stack.pose_a - stack.pose_b
     H = np.zeros((nu + 3 * m + 1, nu + 3 * m + 1))
     f = np.zeros(nu + 3 * m + 1)
-    rows = np.concatenate((stack.actuation, stack.mobility), axis=1)[row]  # (n, nu + 3m)
-    weighted = rows.T * stack.weight[row]
-    H[:-1, :-1] = product(weighted, rows)
-    f[:-1] = product(weighted, stack.drift[row])
+    blending = -stack.blending[:, None]
+    rows = np.concatenate((stack.actuation, stack.mobility, blending), axis=1)[row]
+    weighted = rows.T * stack.weight[row]  # (nu + 3m + 1, n)
+    H += product(weighted, rows)
+    f += product(weighted, stack.drift[row])
     H[:nu, :nu].flat[:: nu + 1] += wP
-    H[:nu, -1] = H[-1, :nu] = -wP * difference
-    H[-1, -1] = wP * product(difference, difference) + stack.blend_weight
+    H[:nu, -1] -= wP * difference
+    H[-1, :nu] -= wP * difference
+    H[-1, -1] += wP * product(difference, difference) + stack.blend_weight
     f[:nu] -= wP * stack.pose_b
-    f[-1] = wP * product(difference, stack.pose_b) - stack.blend_weight * stack.blend
+    f[-1] += wP * product(difference, stack.pose_b) - stack.blend_weight * stack.blend
     _add_forces(H[nu:-1, nu:-1], f[nu:-1], stack)
     solution, head, force, tail = solve_cone(stack, solver, H, f, start)
     return Answer(head, force, float(tail[0]), solution)

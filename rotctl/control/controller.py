@@ -92,7 +92,10 @@ class Controller:
         """The reference."""
         poses = np.array((command.pose_a, command.pose_b))
         torques = self._tracker.torques(state, poses, command.pose)
-        stack = collect(self.model, state, command, self.settings, torques, blend)
+        towards = None
+        if self.settings.tracking == "acceleration":
+            towards = self._tracker.accelerations(state, poses, command.pose)
+        stack = collect(self.model, state, command, self.settings, torques, blend, towards)
         iterations = 0
         reasons: list[str] = []
         for link in self.chain:

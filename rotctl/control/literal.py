@@ -77,7 +77,7 @@ def objectives(stack: Stack, model: Model, state: State, M: Array) -> list[Objec
     momentum, motion = rows(len(stack.rate_wanted)), rows(len(stack.wanted))
     momentum[:, :nv] = product(stack.rate_rows, _momentum_matrix(state, M))
     bias = product(stack.rate_rows, _momentum_bias(model, state))
-    motion[:, :nv] = stack.rows
+    motion[:, :nv], motion[:, -1] = stack.rows, -stack.blending
     blend, difference = rows(nu), stack.pose_a - stack.pose_b
     blend[:, nv : nv + nu] = np.eye(nu)
     blend[:, -1] = -difference
@@ -87,7 +87,8 @@ def objectives(stack: Stack, model: Model, state: State, M: Array) -> list[Objec
     gamma[0, -1] = 1.0
     return [
         Objective(momentum, stack.rate_wanted - bias, stack.rate_weight),  # E_L, E_H
-        Objective(motion, stack.wanted, stack.weight),  # W_v term of eq. 2, and the tasks
+        Objective(motion, stack.wanted, stack.weight),  # W_v term of eq. 2, the tasks, and poses by
+        # acceleration
         Objective(blend, stack.pose_b, np.full(nu, stack.pose.weight)),  # E_B, eq. 7
         Objective(force, np.zeros(3 * m), np.full(3 * m, stack.contact.force)),
         Objective(gamma, np.array([stack.blend]), np.array([stack.blend_weight])),

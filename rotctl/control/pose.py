@@ -53,3 +53,14 @@ class PoseTracker:
         acceleration = np.empty_like(force)
         mujoco.mj_solveM(mj, scratch, acceleration, force)
         return np.asarray(explicit - h * damping * acceleration[:, joints])
+
+    def accelerations(self, state: State, poses: Array, gains: PoseGains) -> Array:
+        """Accelerations (k, nu) [rad/s2] towards poses (k, nu) [rad].
+
+        Of the same spring and damper, at the end of the control period, too, each joint by itself.
+        """
+        h = 0.0 if gains.explicit else max(gains.horizon, self._period)
+        velocity = state.velocity[self._model.joints]
+        predicted = state.position[self._model.angles] + h * velocity
+        spring = gains.stiffness * (poses - predicted) - gains.damping * velocity
+        return np.asarray(spring / (1.0 + h * gains.damping))

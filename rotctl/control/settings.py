@@ -12,6 +12,7 @@ from rotctl.settings import STRICT, NonNegative, NonNegativeVector, Positive
 
 FormName = Literal["condensed", "literal"]
 BackendName = Literal["compiled", "reference"]
+TrackedBy = Literal["force", "acceleration"]
 
 
 @validated(frozen=True, config=STRICT)
@@ -37,7 +38,8 @@ class PoseGains:
     Attributes:
         stiffness: K_s [1/s2]; damping: K_d [1/s].
         horizon: both act as they will be so long ahead, at least one control period [s].
-        weight: on the torques' distance from the blend [1/(N m)2].
+        weight: on the torques' distance from the blend [1/(N m)2]; by acceleration, on the
+            joints' accelerations' [1/(rad/s2)2].
         blend: on the rate of the blend gamma, relative to the pose objective [s2].
         explicit: eq. 6 as printed, at this instant and without the horizon.
     """
@@ -83,6 +85,8 @@ class ControllerSettings:
         merging: which contacts count as one.
         friction: half-width of the controller's friction pyramid, mu of eq. 2 [-].
         sees_disturbance: whether control knows of the forces from outside.
+        tracking: poses by the torques that lead to them, eq. 7, or by such accelerations, as the
+            paper says that others do.
         poses, contacts: further gains of poses and contacts, by the name that a stage asks for.
         tasks: gains by the name of a behaviour's task, or by the name that a task asks for.
     """
@@ -100,6 +104,7 @@ class ControllerSettings:
     contact: ContactGains
     pose: PoseGains
     tasks: dict[str, TaskGains]
+    tracking: TrackedBy = "force"
     poses: dict[str, PoseGains] = field(default_factory=dict)
     contacts: dict[str, ContactGains] = field(default_factory=dict)
     description: str = ""

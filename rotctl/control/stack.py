@@ -43,6 +43,7 @@ class Stack:
         rows: (n, nv) R over qddot, first N, T1, T2 of each contact.
         wanted: (n,) what they should give.
         weight: (n,); rows of weight 0 count nowhere.
+        blending: (n,) what they should give beside that, times gamma.
         solved: (n, nv) R M^-1.
         drift: (n,) c - wanted.
         maps: (6, 3m) contact forces to rates of [L, H].
@@ -69,6 +70,7 @@ class Stack:
     rows: Array
     wanted: Array
     weight: Array
+    blending: Array
     solved: Array
     drift: Array
     maps: Array
@@ -117,6 +119,7 @@ class Stack:
         """Weight on the squared change of gamma in one period."""
         difference = self.pose_a - self.pose_b
         moved = self.pose.weight * float(product(difference, difference))
+        moved += float(product(self.weight, self.blending * self.blending))
         return self.pose.blend / self.period**2 * max(1.0, moved)
 
     def subset(self, keep: NDArray[np.bool_]) -> "Stack":
@@ -129,6 +132,7 @@ class Stack:
             rows=self.rows[rows],
             wanted=self.wanted[rows],
             weight=self.weight[rows],
+            blending=self.blending[rows],
             solved=self.solved[rows],
             drift=self.drift[rows],
             maps=self.maps[:, columns],
@@ -155,12 +159,15 @@ def collect(
     settings: ControllerSettings,
     torques: Array,
     blend: float,
+    accelerations: Array | None = None,
 ) -> Stack:
     """The stack over all contacts that are not held out.
 
     Args:
         torques: (2, nu) pose torques tau_a, tau_b.
         blend: gamma of the previous step.
+        accelerations: (2, nu) towards both poses; where they are given, poses are tracked by
+            them, as rows after those of the tasks, and the torques only where nothing solves.
     """
     keep = command.candidates(state)
     frame, jacobian = _along(model, state, command.forward, keep)
@@ -172,6 +179,12 @@ def collect(
     tasks = _evaluate(command, model, state)
     motion = [task.rows for task in tasks if not task.momentum]
     momentum = [task.rows for task in tasks if task.momentum]
+    pose, blending = command.pose, np.zeros(len(jacobian) + sum(len(r.wanted) for r in motion))
+    if accelerations is not None:
+        a, b = accelerations
+        weight = np.full(len(a), pose.weight)
+        motion = [*motion, Rows(np.eye(model.mj.nv)[model.joints], b, weight, np.zeros(3))]
+        pose, blending = replace(pose, weight=0.0), np.concatenate((blending, a - b))
     rows = np.concatenate((jacobian, *(rows.matrix for rows in motion)))
     wanted = np.concatenate((stop, *(rows.wanted for rows in motion)))
     solved = state.solve_mass(model.mj, np.concatenate((rows, state.bias[None])))
@@ -184,13 +197,14 @@ def collect(
         torque_limit=model.torque_limit,
         joints=model.joints,
         contact=command.contact,
-        pose=command.pose,
+        pose=pose,
         pose_a=torques[0],
         pose_b=torques[1],
         blend=blend,
         rows=rows,
         wanted=wanted,
         weight=np.concatenate((held, *(rows.weight for rows in motion))),
+        blending=blending,
         solved=solved[:-1],
         drift=-product(rows, solved[-1]) - wanted,
         maps=contact_momentum_maps(state.momentum, jacobian),
