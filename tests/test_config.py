@@ -345,8 +345,8 @@ def test_plain_data_is_checked_the_same_way(plain):
 
 
 def test_a_reference_is_added_to_a_behaviour():
-    plain = load(["behaviour=forward_roll_2"]).behaviour.reference
-    bent = load(["behaviour=forward_roll_2", "+reference=humanoid3d_roll"]).behaviour.reference
+    plain = load(["behaviour=reference_roll"]).behaviour.reference
+    bent = load(["behaviour=reference_roll", "+reference=humanoid3d_roll"]).behaviour.reference
     assert plain.clip == bent.clip == "forward_roll_2"
     assert not plain.offsets
     assert bent.offsets["neck_y"][0] > 1.0

@@ -86,7 +86,7 @@ def test_free_out_of_plane(name, stiffness, damping):
 
 
 @pytest.mark.parametrize(
-    ("name", "climb"), [("decline", -np.sin(np.radians(6))), ("decline_unaligned", 0.0)]
+    ("name", "climb"), [("decline_flowing", -np.sin(np.radians(6))), ("decline_unaligned", 0.0)]
 )
 def test_the_commanded_velocity_on_the_decline(name, climb):
     made, state, now, _ = at_a_state([f"behaviour={name}"])

@@ -34,7 +34,7 @@ def turned_back(position, turn):
     [
         ["behaviour=forward_roll_1", "seed=2000"],
         ["behaviour=forward_roll_1_phase", "seed=2001", "controller.backend=reference"],
-        ["behaviour=forward_roll_2", "seed=2000", "excursion=root"],
+        ["behaviour=reference_roll", "seed=2000", "excursion=root"],
         ["behaviour=backward_roll_1", "seed=2001", "start=still"],
         # Where boxqp stops short along one heading alone, the two solvers part by 1e-9: seed 2000.
         ["behaviour=sideways_roll", "seed=2003"],

@@ -328,7 +328,7 @@ def test_the_captured_roll_rolls_on_where_it_is_bent(tmp_path):
     def revolutions(*overrides):
         config = load(
             [
-                "behaviour=forward_roll_2",
+                "behaviour=reference_roll",
                 f"behaviour.reference.clip={clip}",
                 "duration=5",
                 *overrides,

@@ -33,7 +33,7 @@ def test_spinning_in_the_air():
 
 @pytest.mark.parametrize("seed", range(3))
 def test_leaping_down_a_steep_slope(seed):
-    summary = judged("behaviour=decline", "terrain.angle=-30", "duration=12", f"seed={seed}")
+    summary = judged("behaviour=decline_flowing", "terrain.angle=-30", "duration=12", f"seed={seed}")
     assert summary["revolutions"] > 10.0
     assert summary["flight_turn"] > 0.7
     assert not summary["success"]
@@ -48,7 +48,7 @@ def test_falling_limp_for_less_than_a_stall_may_last():
 @pytest.mark.parametrize("overrides", [["terrain.angle=-20"], ["behaviour.angular_velocity=1.3"]])
 def test_sliding_down_an_icy_slope(overrides):
     ice = ["terrain.friction=0.02"]
-    assert not judged("behaviour=decline", "duration=6", *ice, *overrides)["success"]
+    assert not judged("behaviour=decline_flowing", "duration=6", *ice, *overrides)["success"]
 
 
 @pytest.fixture(scope="module")

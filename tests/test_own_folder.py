@@ -38,17 +38,17 @@ def cli(here, capsys):
 
 
 def test_a_copy_is_a_choice_like_any_other(here, cli):
-    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")
+    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "reference_roll")
     assert (code, said) == (0, "conf/behaviour/my_roll.yaml\n")
     mine, theirs = (
         path.read_text().splitlines()
-        for path in (here / said.strip(), conf_dir() / "behaviour" / "forward_roll_2.yaml")
+        for path in (here / said.strip(), conf_dir() / "behaviour" / "reference_roll.yaml")
     )
-    assert mine[0].startswith("# Copied from behaviour/forward_roll_2 of rotctl ")
+    assert mine[0].startswith("# Copied from behaviour/reference_roll of rotctl ")
     assert [a for a, b in zip(mine[1:], theirs, strict=True) if a != b] == ["name: my_roll"]
     shown = yaml.safe_load(cli("show", "behaviour=my_roll")[1])
     with_hydra = yaml.safe_load(cli("show", "behaviour=my_roll", "~behaviour.source")[1])
-    theirs = yaml.safe_load(cli("show", "behaviour=forward_roll_2")[1])
+    theirs = yaml.safe_load(cli("show", "behaviour=reference_roll")[1])
     assert shown.pop("behaviour")["name"] == "my_roll" == with_hydra.pop("behaviour")["name"]
     theirs.pop("behaviour")
     assert shown == theirs == with_hydra
@@ -71,7 +71,7 @@ def test_in_a_clone_a_copy_is_one_of_ours(here, cli, monkeypatch):
     """There ./conf is what comes with rotctl: nothing in it is marked as the user's."""
     shutil.copytree(conf_dir(), here / "conf")
     monkeypatch.setattr(listing, "conf_dir", lambda: here / "conf")
-    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")
+    code, said, _ = cli("new", "behaviour", "my_roll", "--from", "reference_roll")
     assert (code, said) == (0, "conf/behaviour/my_roll.yaml\n")
     assert not (here / "conf" / listing.MARK).exists()
     assert "my_roll" in listing.choices("behaviour")
@@ -79,7 +79,7 @@ def test_in_a_clone_a_copy_is_one_of_ours(here, cli, monkeypatch):
 
 
 def test_what_editors_leave_beside_a_file_is_no_choice(here, cli):
-    assert cli("new", "behaviour", "my_roll", "--from", "forward_roll_2")[0] == 0
+    assert cli("new", "behaviour", "my_roll", "--from", "reference_roll")[0] == 0
     (here / "conf" / "behaviour" / ".#my_roll.yaml").symlink_to("me@host.1:5")
     (here / "conf" / "behaviour" / "gone.yaml").symlink_to("nowhere")
     code, shown, _ = cli("show", "behaviour=my_roll")
@@ -158,7 +158,7 @@ def test_every_kind_can_be_begun(here):
 
 
 def test_five_calls(here):
-    make("behaviour", "my_roll", "forward_roll_2")
+    make("behaviour", "my_roll", "reference_roll")
     config = api.load(["behaviour=my_roll", "duration=0.5"], config_dir="conf")
     steps = []
     log = api.simulate(config, "out", progress=lambda: steps.append(1))

@@ -95,7 +95,7 @@ def test_unknown_names_are_answered_with_the_known_ones(override, start):
 def test_the_run_id_knows_what_is_in_the_clip(tmp_path):
     """A path stays the same when its file changes; a resumed sweep must not take old for new."""
     path = tmp_path / "clip.yaml"
-    overrides = ["behaviour=forward_roll_2", f"behaviour.reference.clip={path}"]
+    overrides = ["behaviour=reference_roll", f"behaviour.reference.clip={path}"]
     shipped = (conf_dir() / "motion" / "forward_roll.yaml").read_text()
     path.write_text(shipped)
     before = run_id(*overrides)

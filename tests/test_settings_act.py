@@ -80,7 +80,7 @@ CASES = {
         ("controller.supervisor=modified",), r"controller\.thresholds\.separation", seconds=0.8
     ),
     "noslip": Case(("physics.noslip_iterations=3",), r"physics\.noslip_.*"),
-    "clip": Case(("behaviour=forward_roll_2",), r"behaviour\.(?!align_with_slope).*"),
+    "clip": Case(("behaviour=reference_roll",), r"behaviour\.(?!align_with_slope).*"),
     "pace that waits": Case(
         ("behaviour=forward_roll", "behaviour.angular_velocity=0.4"),
         r"behaviour\.pace\.(?!most|travel).*",

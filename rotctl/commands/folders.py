@@ -15,7 +15,7 @@ def add_new(commands: Commands) -> None:
         help="a behaviour, character, terrain, ... of your own",
         description="Copy a choice with its comments under another name into your own folder of "
         "configs, ./conf or --config-dir, as in: rotctl new behaviour my_roll --from "
-        "forward_roll_2. It is a choice like any other then.",
+        "reference_roll. It is a choice like any other then.",
     )
     command.add_argument("kind", metavar="KIND", help="a group of rotctl list, or motion, tune, "
                          "experiments")  # fmt: skip

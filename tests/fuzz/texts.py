@@ -27,7 +27,7 @@ def clip(rng, samples, here):
     _text_file(rng, here / "c.yaml", samples.clip, here)
     if rng.random() < 0.05:
         return Case(["preview-motion", "c.yaml", "--out", "x.png", "--frames", "2"])
-    run = ["behaviour=forward_roll_2", "behaviour.reference.clip=./c.yaml", "duration=0.05"]
+    run = ["behaviour=reference_roll", "behaviour.reference.clip=./c.yaml", "duration=0.05"]
     return Case(["run", *run, "--out", "o"])
 
 
