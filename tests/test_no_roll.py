@@ -33,7 +33,9 @@ def test_spinning_in_the_air():
 
 @pytest.mark.parametrize("seed", range(3))
 def test_leaping_down_a_steep_slope(seed):
-    summary = judged("behaviour=decline_flowing", "terrain.angle=-30", "duration=12", f"seed={seed}")
+    summary = judged(
+        "behaviour=decline_flowing", "terrain.angle=-30", "duration=12", f"seed={seed}"
+    )
     assert summary["revolutions"] > 10.0
     assert summary["flight_turn"] > 0.7
     assert not summary["success"]

@@ -122,7 +122,7 @@ def test_a_wrong_file_breaks_no_list(here, cli, text):
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (("house", "a", "b"), "house: no such kind of file; valid: behaviour, "),
+        (("zoo", "a", "b"), "zoo: no such kind of file; valid: behaviour, "),
         (("start", "../a", "rest"), "../a: must be letters, digits and _, a letter first"),
         (("start", "1e3", "rest"), "1e3: must be letters, digits and _, a letter first"),
         *(
@@ -243,7 +243,8 @@ def test_a_wrong_key_in_a_file_of_ones_own_is_told_with_the_file(here, cli, comm
     assert code == 2
     assert error == (
         f"rotctl: {path}: unknown key 'behaviour.sped'; did you mean speed? "
-        f"valid keys under behaviour: {KEYS}, angular_momentum, pace, finish, source, description\n"
+        f"valid keys under behaviour: {KEYS}, angular_momentum, pace, finish, course, source, "
+        "description\n"
     )
     path.write_text(path.read_text().replace("sped: 1.0\n", ""))  # an override is no fault of it
     assert cli("show", "behaviour=mine", "behaviour.sped=1")[2].startswith("rotctl: unknown key")
