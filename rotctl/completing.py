@@ -42,6 +42,8 @@ def _in_command(
     if last is not None and last.nargs != 0:  # the value of an option
         if name == "new" and last.dest == "source":
             return listing.named_files(before[before.index(name) + 1])
+        if last.dest == "part":
+            return [key.removesuffix("=") for key in _keys(begun, before)]
         return map(str, last.choices or ())
     if begun.startswith("-"):
         return [text for a in command._actions for text in a.option_strings]

@@ -337,6 +337,23 @@ def to_yaml(config: Config) -> str:
     return "".join(_yaml(json.dumps({part: value})) for part, value in to_dict(config).items())
 
 
+def part_to_yaml(config: Config, key: str) -> str:
+    """What is under a key, as YAML.
+
+    Raises:
+        InputError: there is no such key.
+    """
+    place: Any = to_dict(config)
+    parts = way(key)
+    for depth, part in enumerate(parts):
+        inner = member(place, part)
+        if inner is NOTHING:
+            valid = list(place) if isinstance(place, dict) else ["none, it is a value"]
+            raise InputError(unknown_key(key, dotted(parts[:depth]), valid))
+        place = inner
+    return _yaml(json.dumps({parts[-1]: place})) if parts else to_yaml(config)
+
+
 @lru_cache(maxsize=256)
 def _yaml(part: str) -> str:
     """A part of a config from JSON to YAML; most parts are the same in many runs."""

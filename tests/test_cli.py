@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
@@ -361,13 +362,29 @@ def test_list_has_every_group_and_choice_with_its_description(cli):
 
 
 def test_show_prints_the_config_as_yaml(cli):
-    import yaml
-
     code, stdout, stderr = cli("show", "seed=7", "start=rest")
     assert (code, stderr) == (0, "")
     data = yaml.safe_load(stdout)
     assert data["seed"] == 7
     assert data["start"]["name"] == "rest"
+
+
+def test_a_part_of_a_config_is_shown_alone(cli):
+    whole = yaml.safe_load(cli("show", "start=rest")[1])
+    for key, wanted in (
+        ("start", {"start": whole["start"]}),
+        ("controller.pose", {"pose": whole["controller"]["pose"]}),
+        ("character.bodies[0].name", {"name": "pelvis"}),
+        (".", whole),
+    ):
+        code, stdout, _ = cli("show", "start=rest", "--part", key)
+        assert (code, yaml.safe_load(stdout)) == (0, wanted)
+    assert cli("show", "--part", "controller.pos")[2].startswith(
+        "rotctl: unknown key 'controller.pos'; did you mean pose? valid keys under controller: "
+    )
+    assert cli("show", "--part", "seed.x")[2] == (
+        "rotctl: unknown key 'seed.x'; valid keys under seed: none, it is a value\n"
+    )
 
 
 def test_inspect_shows_everything_and_checks_it(cli, made):

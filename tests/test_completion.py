@@ -31,6 +31,7 @@ def words(line, capsys):
         ("rotctl run con", ["controller.", "controller="]),
         ("rotctl run controller.po", ["controller.pose."]),
         ("rotctl show controller.pose.w", ["controller.pose.weight="]),
+        ("rotctl show --part controller.pose.w", ["controller.pose.weight"]),
         ("rotctl run behaviour=back_flip behaviour.shap", ["behaviour.shape="]),
         ("rotctl run behaviour.shap", []),
         ("rotctl run +fi", ["+finish="]),

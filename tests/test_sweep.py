@@ -116,6 +116,21 @@ def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
         assert not out.exists()
 
 
+def test_an_experiment_has_a_folder_of_its_name_and_other_sweeps_want_one(
+    cli, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    quick = ("seed=1", "duration=0.1", "--dry-run")
+    code, stdout, _ = cli("sweep", "+experiment=table1", *quick)
+    assert (code, stdout.splitlines()[0]) == (0, "10 runs, 10 of them not yet in sweeps/table1")
+    assert cli("sweep", "+experiment=table1", *quick, "--out", "x")[1].startswith(
+        "10 runs, 10 of them not yet in x\n"
+    )
+    said = "rotctl: no folder for the runs; give --out DIR, such as --out sweeps/mine\n"
+    assert cli("sweep", *quick) == (2, "", said)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_file_in_the_way_of_the_folder(cli, tmp_path):
     (tmp_path / "file").touch()
     code, _, stderr = cli("sweep", BRIEF, "--out", tmp_path / "file")

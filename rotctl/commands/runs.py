@@ -165,14 +165,16 @@ def add_show(commands: Commands) -> None:
         "there can be overridden, as in: rotctl show controller.pose.damping=40",
     )
     command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument("--part", metavar="KEY", help="only what is under it, such as behaviour")
     command.set_defaults(command=show)
 
 
 def show(arguments: argparse.Namespace) -> int:
     """Print the composed config."""
-    from rotctl.config import load, to_yaml
+    from rotctl.config import load, part_to_yaml, to_yaml
 
-    print(to_yaml(load(arguments.overrides)), end="")
+    config = load(arguments.overrides)
+    print(part_to_yaml(config, arguments.part) if arguments.part else to_yaml(config), end="")
     return 0
 
 

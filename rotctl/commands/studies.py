@@ -21,7 +21,10 @@ def add_sweep(commands: Commands) -> None:
     )
     command.add_argument("overrides", nargs="*", metavar="KEY=VALUES", help=OVERRIDES_HELP)
     command.add_argument(
-        "--out", type=folder_name, required=True, metavar="DIR", help="folder of runs"
+        "--out",
+        type=folder_name,
+        metavar="DIR",
+        help="folder of runs [sweeps/NAME of an experiment]",
     )
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
     command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
@@ -61,6 +64,10 @@ def sweep(arguments: argparse.Namespace) -> int:
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")
+    experiment = experiments.named(arguments.overrides)
+    if arguments.out is None and not experiment:
+        raise InputError("no folder for the runs; give --out DIR, such as --out sweeps/mine")
+    out = arguments.out or Path("sweeps", experiment)
     kept = keep.read(arguments.keep)
     watched = None if not arguments.quiet else True  # None: only on a terminal
     matrix = experiments.matrix(arguments.overrides)
@@ -68,21 +75,21 @@ def sweep(arguments: argparse.Namespace) -> int:
         with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
             runs = planned(bar)
         if arguments.dry_run:
-            print(without_running(runs, arguments.out, engine.workers, kept))
+            print(without_running(runs, out, engine.workers, kept))
             return 0
-        with locked(arguments.out):
-            if experiment := experiments.named(arguments.overrides):
-                experiments.copy_into(arguments.out, experiment)
+        with locked(out):
+            if experiment:
+                experiments.copy_into(out, experiment)
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
-                there = plan(runs, arguments.out, arguments.strict, looking.update, kept)
+                there = plan(runs, out, arguments.strict, looking.update, kept)
             if not arguments.quiet:
-                print(at_the_start(there, arguments.out, engine.where), file=sys.stderr, flush=True)
+                print(at_the_start(there, out, engine.where), file=sys.stderr, flush=True)
             with shown(len(runs), len(there.done), arguments.quiet) as progress:
-                tally = launch(there, runs, arguments.out, engine, arguments.retries, progress)
+                tally = launch(there, runs, out, engine, arguments.retries, progress)
     if tally.broken:
         print(printable(failures(tally, runs)), file=sys.stderr)
     if not arguments.quiet:
-        print(at_the_end(tally, there, arguments.out))
+        print(at_the_end(tally, there, out))
     return 1 if tally.broken else 0
 
 
