@@ -14,7 +14,7 @@ from hydra.errors import HydraException
 from rotctl.checked import brief, clip
 from rotctl.choosing import MISSING, Assignment
 from rotctl.errors import InputError
-from rotctl.listing import choices
+from rotctl.listing import choices, conf_dir
 from rotctl.meant import instead
 
 LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte
@@ -41,7 +41,7 @@ def parsed(override: str) -> Override:
     if re.match(r"[+~]*hydra[./=]", override):
         raise InputError(f"{shown}: Hydra's own settings cannot be changed here")
     if "=" not in override and not override.startswith("~"):
-        raise InputError(f"{shown} has no '='; write key=value, such as seed=3")
+        raise InputError(f"{shown} has no '='; write {_with_value(override)}")
     try:
         found = OverridesParser.create().parse_override(override)
         if not found.is_sweep_override() and not found.is_delete():
@@ -56,6 +56,15 @@ def parsed(override: str) -> Override:
     if found.is_delete() and "=" in override:
         raise InputError(f"{shown}: to remove a key, write ~{found.key_or_group}")
     return found
+
+
+def _with_value(word: str) -> str:
+    """What a word without a value was probably meant to be."""
+    if valid := choices(word):
+        return f"{word}=CHOICE; valid: {', '.join(valid)}"
+    groups = sorted(path.name for path in conf_dir().iterdir() if choices(path.name))
+    chosen = [f"{group}={word}" for group in groups if word in choices(group)]
+    return " or ".join(chosen[:3]) or "key=value, such as seed=3"
 
 
 def single(override: str) -> Override:

@@ -86,12 +86,22 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     unknown = [text for text in others if text.startswith("-") or not takes_more]
     if unknown:
         command = arguments.parser
-        near = [meant(text.partition("=")[0], command.options()) for text in unknown]
-        hint = next((f" ({text.rstrip()})" for text in near if text), "")
+        near = [_instead_of(text, command.options(), takes_more) for text in unknown]
+        hint = next((f" ({text})" for text in near if text), "")
         command.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     if takes_more:
         arguments.overrides = [*arguments.overrides, *others]
     return arguments
+
+
+def _instead_of(text: str, options: list[str], takes_overrides: bool) -> str:
+    """What an unknown option was probably meant to be; empty if nobody can say."""
+    from rotctl.listing import choices  # reads YAML: who makes no mistake need not wait for it
+
+    option, key = text.partition("=")[0], text.lstrip("-").partition("=")[0]
+    if takes_overrides and choices(key):
+        return f"write {key}=CHOICE"
+    return meant(option, options).rstrip()
 
 
 def _parser() -> argparse.ArgumentParser:

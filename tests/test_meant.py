@@ -41,6 +41,14 @@ def test_what_is_like_none_of_them_has_no_hint(word):
             "no such kind of file; did you mean behaviour? ",
         ),
         (["new", "start", "a", "--from", "rset"], "no such start; did you mean rest? valid: "),
+        (["run", "forward_roll_2"], "has no '='; write behaviour=forward_roll_2\n"),
+        (["run", "landing"], "has no '='; write controller=landing or criteria=landing\n"),
+        (["run", "start"], "has no '='; write start=CHOICE; valid: falling, long, "),
+        (
+            ["run", "--terrain", "flat"],
+            "unrecognized arguments: --terrain (write terrain=CHOICE); ",
+        ),
+        (["tune"], "the following arguments are required: NAME, --out; see rotctl tune --help"),
         (["rnu"], "'rnu': no such choice; did you mean run? valid: run, render, "),
         (
             ["run", "--filmstip"],

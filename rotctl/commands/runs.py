@@ -22,7 +22,9 @@ def add_run(commands: Commands) -> None:
         description="Simulate one run into OUT/<run id>/run.h5 and summary.json. The run id is "
         "a hash of the config: a run that is already there is reported, not redone.",
     )
-    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument(
+        "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
+    )
     command.add_argument(
         "--out", type=folder_name, default=Path("runs"), help="folder for runs [%(default)s]"
     )
@@ -164,7 +166,9 @@ def add_show(commands: Commands) -> None:
         description="Print the config that a run with these overrides gets, as YAML: every key "
         "there can be overridden, as in: rotctl show controller.pose.damping=40",
     )
-    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument(
+        "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
+    )
     command.add_argument("--part", metavar="KEY", help="only what is under it, such as behaviour")
     command.set_defaults(command=show)
 

@@ -19,7 +19,9 @@ def add_sweep(commands: Commands) -> None:
         "syntax: a=x,y  'seed=range(0,100)'  'start=glob(*)'  or +experiment=NAME. Runs that are "
         "there are not redone, so that the same command goes on where it was cut off.",
     )
-    command.add_argument("overrides", nargs="*", metavar="KEY=VALUES", help=OVERRIDES_HELP)
+    command.add_argument(
+        "overrides", nargs="*", default=[], metavar="KEY=VALUES", help=OVERRIDES_HELP
+    )
     command.add_argument(
         "--out",
         type=folder_name,
@@ -104,7 +106,9 @@ def add_judge(commands: Commands) -> None:
         "--metric 'top=max(com[:, 2])'. Logs and rows stay as they are.",
     )
     command.add_argument("folder", type=Path, metavar="DIR")
-    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help="of criteria alone")
+    command.add_argument(
+        "overrides", nargs="*", default=[], metavar="KEY=VALUE", help="of criteria alone"
+    )
     command.add_argument(
         "--metric",
         type=name_and_text,
@@ -232,7 +236,9 @@ def add_tune(commands: Commands) -> None:
         "fresh training starts. The same command again goes on where the last one ended.",
     )
     command.add_argument("name", metavar="NAME", help="a space in conf/tune/, or a .yaml file")
-    command.add_argument("overrides", nargs="*", metavar="KEY=VALUE", help=OVERRIDES_HELP)
+    command.add_argument(
+        "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
+    )
     command.add_argument(
         "--out",
         type=folder_name,
