@@ -494,7 +494,8 @@ def test_a_blow_up_is_a_complaint(world, settings):
         ("physics.margin=0", "physics.margin=0: must be greater than 0"),
         (
             "physics.iterations=3",
-            "unknown key 'physics.iterations'; valid keys under physics: name, ",
+            "unknown key 'physics.iterations'; did you mean ccd_iterations? "
+            "valid keys under physics: name, ",
         ),
     ],
 )

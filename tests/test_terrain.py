@@ -227,11 +227,11 @@ def test_an_hour_of_it_is_a_model_that_a_log_can_hold(terrain, megabytes):
 def test_the_command_follows_the_slope():
     for terrain, angle in (("incline", 6.0), ("decline", -6.0), ("flat", 0.0)):
         scenario = build(load([f"terrain={terrain}"]))
-        velocity = scenario.behaviour._velocity
+        velocity = scenario.behaviour._velocities[0]
         assert np.degrees(np.arctan2(velocity[2], velocity[0])) == pytest.approx(angle)
         assert np.linalg.norm(velocity) == pytest.approx(1.2)
     level = build(load(["terrain=decline", "behaviour.align_with_slope=false"]))
-    assert level.behaviour._velocity.tolist() == [1.2, 0.0, 0.0]
+    assert level.behaviour._velocities[0].tolist() == [1.2, 0.0, 0.0]
 
 
 def test_rows_bring_their_terrain_and_a_choice_overrides_it():
