@@ -116,6 +116,19 @@ def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, co
         ),
         ({"success": True, "revolutions": 10**400}, "success"),
         (
+            {"success": True, "revolved": 361.2, "flight_time": 0.64, "duration": 6.0},
+            "success: turned 361 deg, 0.64 s in the air",
+        ),
+        (
+            {"success": True, "revolved": 540.0, "entry_angle": 2.31},
+            "success: enters 2.3 deg off the vertical",
+        ),
+        (
+            {"success": True, "turned": 178.9, "arrival": 1.72},
+            "success: turned 179 deg in 1.7 s",
+        ),
+        ({"success": True, "turned": None, "arrival": 1.72}, "success"),
+        (
             {"success": False, "failure_reason": "stalled for 1.60 s from t = 1.38 s"},
             "FAILED: stalled for 1.60 s from t = 1.38 s",
         ),

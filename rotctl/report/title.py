@@ -1,9 +1,17 @@
 """What stands above every picture of a run: its name, which one it is, and how it ended."""
 
 from dataclasses import dataclass
+from itertools import islice
 
 from rotctl.log import RunLog
 
+# What a success was, by the columns that a kind of motion has.
+DONE = {
+    ("revolutions", "duration"): "{:.1f} revolutions in {:.1f} s",
+    ("entry_angle",): "enters {:.1f} deg off the vertical",
+    ("revolved", "flight_time"): "turned {:.0f} deg, {:.2f} s in the air",
+    ("turned", "arrival"): "turned {:.0f} deg in {:.1f} s",
+}
 LONGEST = 140  # characters of a stranger's text
 
 
@@ -38,10 +46,12 @@ def title(log: RunLog) -> Title:
 def verdict(outcome: dict[str, object]) -> tuple[bool | None, str]:
     """Whether a run succeeded (None: it does not say), and that in words."""
     if outcome.get("success") is True:
-        done, took = outcome.get("revolutions"), outcome.get("duration")
-        if isinstance(done, float) and isinstance(took, float):
-            return True, f"success: {done:.1f} revolutions in {took:.1f} s"
-        return True, "success"
+        told = (
+            words.format(*[outcome[key] for key in keys])
+            for keys, words in DONE.items()
+            if all(isinstance(outcome.get(key), float) for key in keys)
+        )
+        return True, ": ".join(["success", *islice(told, 1)])
     if outcome.get("success") is False:
         return False, f"FAILED: {plain(outcome.get('failure_reason') or 'no reason given')}"
     return None, "outcome unknown"
