@@ -17,6 +17,7 @@ from rotctl.metrics.standing import StandingCriteria, on_others
 if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
 
+HOP = 0.1  # [s] without a contact that is no flight
 TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
 
@@ -66,12 +67,12 @@ def _missing(
     if isinstance(criteria, StandingCriteria):
         return "" if on_others(log, criteria.feet).any() else _standing(log, criteria.rest, period)
     if isinstance(criteria, DiveCriteria):
-        return "" if entry(log) is not None else _before_the_end_of_a_flight(log)
+        return "" if entry(log) is not None else _before_the_end_of_a_flight(log, period)
     if not isinstance(criteria, FlipCriteria) or on_others(log, criteria.landing.feet).any():
         return ""
     _, landed = longest_flight(log)
     resting = _resting("it landed", landed * period, lasted, criteria.landing.rest)
-    return _before_the_end_of_a_flight(log) or resting
+    return _before_the_end_of_a_flight(log, period) or resting
 
 
 def _before_the_turn(
@@ -94,9 +95,10 @@ def _standing(log: Arrays, rest: float, period: float) -> str:
     return _in_the_air(log) or _resting(what, first * period, lasted, rest)
 
 
-def _before_the_end_of_a_flight(log: Arrays) -> str:
-    first, _ = longest_flight(log)
-    return _in_the_air(log) or ("" if first else "before it takes off")
+def _before_the_end_of_a_flight(log: Arrays, period: float) -> str:
+    first, landed = longest_flight(log)
+    flown = (landed - first) * period > HOP
+    return _in_the_air(log) or ("" if flown else "before it takes off")
 
 
 def _in_the_air(log: Arrays) -> str:
