@@ -4,7 +4,8 @@
 # Expected: a phone slows its frame rate in poor light; a reader gives each frame once, or fills up to a steady rate and tells
 #   that rate.
 # Happens: it fills up to the stream's base rate, here 60 per second, by showing frames twice, and tells the mean rate of the
-#   frames in the file, 41.4. Frame number over fps runs 1.47 times too slow: what took 1.47 s seems to take 2.15 s. count_frames() says 60. With a steady rate all agree.
+#   frames in the file, 41.4. Frame number over fps runs 1.47 times too slow: what took 1.47 s seems to take 2.15 s.
+#   count_frames() says 60. With a steady rate all agree.
 # Seen with: imageio 2.38.1, imageio-ffmpeg 0.8.1, file written by av 18.1.0.
 # Means: the angular velocity of a filmed somersault comes out 32 % too low, and gravity at less than half its value, by the
 #   file's own metadata. Take the times of the frames from av (frame.time), or test that a fall has 9.81.
