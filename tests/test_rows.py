@@ -12,6 +12,7 @@ from rotctl.behaviours.facing import FACING
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.rolling import failure_reason, measure
+from rotctl.metrics.skeleton import Skeleton
 from rotctl.run import in_memory
 from rotctl.scenario import build
 
@@ -71,6 +72,22 @@ def test_the_log_roll_stays_long():
     joints = [str(np.char.decode(name)) for name in buffer.model.joint]
     knees = [7 + joints.index(f"knee_{side}") for side in "lr"]
     assert np.abs(buffer.trajectory.qpos[:, knees]).mean() < 0.35  # [rad]
+
+
+def test_legs_together_are_nearer_than_those_of_the_row():
+    """Between the middles of the knees, which touch at 0.14 m."""
+
+    def apart(row):
+        buffer, metrics, _ = rolled(f"behaviour={row}", "seed=2003")
+        assert metrics.revolutions >= LEAST
+        model = build(load([f"behaviour={row}"])).model.mj
+        shins = [
+            Skeleton(model, buffer.trajectory.qpos).origin(model.body(f"shin_{side}").id)
+            for side in "lr"
+        ]
+        return np.percentile(np.linalg.norm(shins[0] - shins[1], axis=1), 95)
+
+    assert apart("log_roll") < 0.19 < 0.24 < apart("sideways_roll")
 
 
 @pytest.mark.parametrize(
