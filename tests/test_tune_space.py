@@ -137,7 +137,7 @@ def test_one_line_for_a_bad_value(complaint, where, value, said):
 
 def test_one_line_for_what_is_missing_or_no_space(complaint, tmp_path):
     assert complaint(lambda data: data.pop("runs")) == "runs: missing, it cannot be left out"
-    with pytest.raises(InputError, match="^nope: no such space; valid: clip, clip_one_s"):
+    with pytest.raises(InputError, match="^nope: no such space; valid: ablation, clip, clip_one_s"):
         load_space("nope")
     with pytest.raises(InputError, match="none.yaml: no such file$"):
         load_space(str(tmp_path / "none.yaml"))
