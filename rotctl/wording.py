@@ -25,6 +25,8 @@ def readable(summary: dict[str, Any]) -> str:
 
     def number(key: str, form: str = ".2f") -> str:
         value = summary.get(key)
+        if isinstance(value, str):
+            return one_line(value)
         return format(value, form) if isinstance(value, int | float) else "-"
 
     name, seed, run, reason = (

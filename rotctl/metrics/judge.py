@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from rotctl.metrics import (
+    acrobatic,
     appearance,
     dive,
     early,
@@ -20,6 +21,7 @@ from rotctl.metrics import (
     rolling,
     standing,
 )
+from rotctl.metrics.acrobatic import AcrobaticCriteria
 from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.finish import FinishCriteria
@@ -29,7 +31,8 @@ from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 
 Criteria = Annotated[
-    DiveCriteria
+    AcrobaticCriteria
+    | DiveCriteria
     | FinishCriteria
     | FlipCriteria
     | OrientationCriteria
@@ -37,7 +40,7 @@ Criteria = Annotated[
     | StandingCriteria,
     Field(discriminator="kind"),
 ]
-_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive, finish)
+_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive, finish, acrobatic)
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
@@ -93,6 +96,8 @@ def judge(
         found, reason = dict(vars(stood)), standing.failure(stood, criteria, steps * period)
     elif isinstance(criteria, DiveCriteria):
         found, reason = dive.judge(log, criteria, commanded["target_excursion"], period)
+    elif isinstance(criteria, AcrobaticCriteria):
+        found, reason = acrobatic.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
     else:

@@ -1,0 +1,92 @@
+"""A move over hands and feet in numbers: what came down in which order, and whether it stands."""
+
+import math
+from dataclasses import asdict, replace
+from typing import Any, Literal
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.metrics import flip, standing
+from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.touching import TouchDown, touch_downs
+from rotctl.settings import STRICT, Positive
+
+COLUMNS = (
+    Column("touched", "What came down, and when [s]", ""),
+    Column("bears_most", "Largest upward force of the ground, mean of a control step", "N"),
+)
+
+
+@validated(frozen=True, config=STRICT)
+class AcrobaticCriteria:
+    """Limits of a move over hands and feet; see `conf/criteria/handspring.yaml`.
+
+    Attributes:
+        order: groups of bodies that come down one after the other, after the start; the bodies of
+            one group in any order.
+        turn: how far the trunk's turn may be off the target in the end [deg].
+        about: what it turns about.
+        landing: what counts as standing in the end; feet alone may touch once the last group is
+            down.
+    """
+
+    name: str
+    kind: Literal["acrobatic"]
+    order: tuple[tuple[str, ...], ...]
+    turn: Positive
+    landing: StandingCriteria
+    about: Literal["left", "up"] = "left"
+    description: str = ""
+
+
+def judge(
+    log: Arrays, criteria: AcrobaticCriteria, target: float, period: float
+) -> tuple[dict[str, Any], str]:
+    """Columns of a run, and why it is no success; empty if it is one.
+
+    Args:
+        target: to turn [deg].
+        period: of the control [s].
+    """
+    events, turned = touch_downs(log, period), flip.turn(log, criteria.about)
+    revolved = float(turned[-1]) if len(turned) else math.nan
+    stood = standing.measure(log, criteria.landing, period)
+    duration = len(floats(log, "trajectory/time")) * period
+    # Hands were on the ground by order, and what came down otherwise is told by that.
+    reason = standing.failure(replace(stood, other_contact=0.0), criteria.landing, duration)
+    if wrong := out_of_order(events, criteria):
+        reason = wrong
+    elif not abs(revolved - target) < criteria.turn:
+        reason = f"turned {revolved:.0f} deg of {target:g}"
+    up = floats(log, "contacts/force_realised")[:, :, 2].sum(axis=1)
+    bears = float(up.max()) if len(up) else math.nan
+    found = {"revolved": revolved, "bears_most": bears, "touched": told(events)}
+    return {**asdict(stood), **found}, reason
+
+
+def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
+    """How touch-downs differ from the order that is asked for; empty if they do not."""
+    feet = set(criteria.landing.feet)
+    groups = [set(group) for group in criteria.order]
+    begun, missing = -1, set[str]()  # the group that is coming down, and what of it is not yet
+    for time, body in events:
+        if body in missing:
+            missing.discard(body)
+        elif not missing and begun + 1 < len(groups) and body in groups[begun + 1]:
+            begun += 1
+            missing = groups[begun] - {body}
+        elif begun < 0 and body in feet:
+            continue  # a step before it begins
+        elif begun >= 0 and body in groups[begun]:
+            continue  # once more
+        elif missing or begun + 1 < len(groups) or body not in feet:
+            return f"{body} came down out of order, at {time:.2f} s"
+    if begun + 1 < len(groups):
+        missing = missing or groups[begun + 1]
+    return f"{' and '.join(sorted(missing))} never came down" if missing else ""
+
+
+def told(events: list[TouchDown]) -> str:
+    """Touch-downs for a summary row."""
+    return ", ".join(f"{body} {time:.2f}" for time, body in events)
