@@ -23,7 +23,7 @@ from rotctl.motion import Poses, Turn, make_pose_pair
 from rotctl.rotations import Array, quaternion_from_rotation_vector
 from rotctl.settings import STRICT, NonNegative, Positive
 
-ATTITUDES = np.arange(-80, 81) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
+ATTITUDES = np.arange(-80, 141) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
 
 
 @validated(frozen=True, config=STRICT)

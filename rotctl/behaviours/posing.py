@@ -1,7 +1,7 @@
-"""How a stage chooses the pose that is tracked: over the phase, over a rise, or as flight needs."""
+"""How a stage chooses the pose that is tracked: over phase, rise or turn, or as flight needs."""
 
 from dataclasses import dataclass, field
-from math import copysign
+from math import copysign, radians
 from typing import Protocol
 
 import numpy as np
@@ -11,8 +11,8 @@ from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.scene import Scene
 from rotctl.mechanics.model import Model
 from rotctl.motion import PosePair, Turn, make_pose
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Positive, Range
+from rotctl.rotations import Array, dot
+from rotctl.settings import STRICT, Finite, Positive, Range
 
 
 class PoseLaw(Protocol):
@@ -106,3 +106,63 @@ class Rise:
         change = self.end - self.start
         pose, speed = self.start + share * change, speed * change
         return np.array((pose, pose)), np.array((speed, speed))
+
+
+@validated(frozen=True, config=STRICT)
+class TurnSettings:
+    """From one pose to another while the body turns.
+
+    Attributes:
+        start, end: poses by joint name [rad].
+        angles: turned since the behaviour began, where it leaves the one and where it has come to
+            the other [deg].
+    """
+
+    start: dict[str, Turn]
+    end: dict[str, Turn]
+    angles: tuple[Finite, Finite]
+
+    def __post_init__(self) -> None:
+        if self.angles[0] == self.angles[1]:
+            raise ValueError(f"angles {self.angles[0]:g} and {self.angles[1]:g} are the same")
+
+    def make(self, model: Model, key: str) -> "OverTurn":
+        """For one run.
+
+        Raises:
+            InputError: a name is no joint of the model.
+        """
+        start = make_pose(model, self.start, f"{key}.start")
+        end = make_pose(model, self.end, f"{key}.end")
+        first, last = self.angles
+        return OverTurn(start, end, radians(first), radians(last))
+
+
+@dataclass(frozen=True)
+class OverTurn:
+    """Joints follow the turn, as the slides' hands and arms do: faster where the body is faster.
+
+    Attributes:
+        start, end: (nu,) poses [rad].
+        first, last: turned, where they are to be there [rad].
+    """
+
+    start: Array
+    end: Array
+    first: float
+    last: float
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """Nothing."""
+        return None
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        way = self.last - self.first
+        gone = (scene.turned - self.first) / way
+        share = min(max(gone, 0.0), 1.0)
+        rate = dot(scene.state.momentum.angular_velocity, scene.turning) / way
+        speed = max(rate, 0.0) if share == gone else 0.0
+        change = self.end - self.start
+        pose, speeds = self.start + share * change, speed * change
+        return np.array((pose, pose)), np.array((speeds, speeds))

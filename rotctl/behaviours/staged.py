@@ -219,7 +219,9 @@ class Staged:
             return Flight(flies, self._model, self._frame, self._target, key, shape)
         if stage.rise:
             return stage.rise.make(self._model, f"{key}.rise")
-        assert stage.poses  # one of the three is there
+        if stage.turn:
+            return stage.turn.make(self._model, f"{key}.turn")
+        assert stage.poses  # one of the four is there
         return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:

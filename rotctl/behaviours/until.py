@@ -206,7 +206,43 @@ class Launched:
         )
 
 
+@validated(frozen=True, config=STRICT)
+class Leaves:
+    """None of these bodies is on the ground any more, or it has turned too far to push on.
+
+    Attributes:
+        after: not before so long in the stage: who lands may bounce [s].
+        angle: turned so far since the behaviour began, it ends in any case [deg].
+    """
+
+    kind: Literal["leaves"]
+    bodies: tuple[str, ...]
+    after: NonNegative
+    angle: Finite
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        if Turned("turned", angle=self.angle).met(scene):
+            return True
+        settled = scene.state.time - scene.begin.time >= self.after - 1e-9
+        return settled and not Touches("touches", self.bodies).met(scene)
+
+
 Until = Annotated[
-    After | Turned | Near | Touches | Airborne | Still | Lands | Enters | Tilted | Launched,
+    After
+    | Turned
+    | Near
+    | Touches
+    | Airborne
+    | Still
+    | Lands
+    | Enters
+    | Tilted
+    | Launched
+    | Leaves,
     Field(discriminator="kind"),
 ]
