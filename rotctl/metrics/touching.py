@@ -30,7 +30,7 @@ def touch_downs(log: Arrays, period: float) -> list[TouchDown]:
     names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/body"]).tolist()]
     bodies, time = np.asarray(log["contacts/body"]), floats(log, "trajectory/time")
     found = []
-    for body in np.unique(bodies[bodies > 0]).tolist():
+    for body in np.unique(bodies[(bodies > 0) & (bodies < len(names))]).tolist():
         rows = np.flatnonzero((bodies == body).any(axis=1))
         # Where the ground holds it at the start it has not come down.
         before = np.concatenate(([-1], rows[:-1]))
