@@ -324,6 +324,9 @@ def test_capsules_stand_for_a_mesh(tmp_path, name):
         ("foot.dae", "/meshes/foot.dae: is no .stl or .obj"),
         ("empty.stl", "/meshes/empty.stl: has no vertices that make a shape"),
         ("link.stl", "/meshes/link.stl: is not below the model's folder"),
+        ("circle.stl", "/meshes/circle.stl: is not below the model's folder"),
+        ("point.stl", "/meshes/point.stl: has no vertices that make a shape"),
+        ("nan.stl", "/meshes/nan.stl: has no vertices that make a shape"),
     ],
 )
 def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, file, reason):
@@ -333,6 +336,9 @@ def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, file, reason):
     (robot / "meshes/foot.dae").write_text("<COLLADA/>")
     (robot / "meshes/empty.stl").write_text("solid nothing\nendsolid\n")
     (robot / "meshes/link.stl").symlink_to(tmp_path / "foot.stl")
+    (robot / "meshes/circle.stl").symlink_to(robot / "meshes/circle.stl")
+    (robot / "meshes/point.stl").write_bytes(stl(0.0 * BRICK))
+    (robot / "meshes/nan.stl").write_bytes(stl(np.nan * BRICK))
     assets = f'<asset><mesh name="foot" file="../meshes/{file}"/></asset>'
     whole = text().replace('angle="degree"', 'angle="degree" meshdir="x/"')
     box = '<geom type="box"'

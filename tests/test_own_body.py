@@ -1,14 +1,17 @@
 """`character: {kind: mjcf, file: robot.xml}`: somebody's model as a choice of a config."""
 
+from xml.etree import ElementTree
+
 import pytest
 import yaml
+from captures import adult
 from test_adopt import text
 
 from rotctl import listing
 from rotctl.cli import main
 from rotctl.config import load, to_dict
 from rotctl.errors import InputError
-from rotctl.run import run
+from rotctl.run import make, run
 from rotctl.scenario import build
 
 INLINE = "character={kind: mjcf, file: robot.xml}"
@@ -105,3 +108,18 @@ def test_an_unknown_key_is_told():
         "unknown key 'hight'; did you mean height? valid keys under character: "
         "kind, file, roles, meshes, name, height,"
     )
+
+
+def test_a_body_without_a_neck_rolls_over_its_head(here):
+    """As a model from elsewhere: our adult's text, less the joints of its neck."""
+    root = ElementTree.fromstring(adult().mjcf)
+    for parent in list(root.iter()):
+        for child in list(parent):
+            if child.get("name", "").startswith("neck_") and child.tag in ("joint", "general"):
+                parent.remove(child)
+    (here / "robot.xml").write_bytes(ElementTree.tostring(root))
+    roll = [INLINE, "behaviour=forward_roll_push", "duration=4"]
+    config = load([*roll, "seed=2000"])
+    assert "neck_y" in config.character.absent
+    runs = [make(load([*roll, f"seed={seed}"])).summary for seed in (2000, 2001, 2002)]
+    assert sum(run["revolutions"] > 1.5 for run in runs) >= 2

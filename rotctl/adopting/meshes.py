@@ -77,7 +77,8 @@ def vertices(path: Path, content: bytes) -> Array:
             found = np.fromiter(numbers, float).reshape(-1, 3)
         except ValueError:
             found = np.zeros((0, 3))
-    if len(found) < 3 or not np.isfinite(found).all() or np.abs(found).max() > 1e6:
+    wide = np.ptp(found, axis=0).max() if len(found) else 0.0
+    if not 1e-6 < wide < 1e6:  # nor anything that is no number
         raise InputError(f"{path}: has no vertices that make a shape")
     return np.asarray(found)
 
@@ -107,7 +108,11 @@ def _folder(path: Path, root: ElementTree.Element) -> Path:
 
 
 def _inside(folder: Path, file: Path) -> Path:
-    if not file.resolve().is_relative_to(folder.resolve()):
+    try:
+        inside = file.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError, ValueError):  # links in a circle, names that no file can have
+        inside = False
+    if not inside:
         raise InputError(f"{file}: is not below the model's folder")
     return file
 
