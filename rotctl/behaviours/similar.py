@@ -19,7 +19,7 @@ from rotctl.behaviours.pacing import PaceSettings
 from rotctl.behaviours.posing import RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
-from rotctl.behaviours.until import After, Airborne, Launched, Still
+from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Still
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")
@@ -61,6 +61,7 @@ UNITS: Units = {
     After: all_of(time, "seconds"),
     Airborne: all_of(time, "seconds"),
     Still: all_of(time, "seconds"),
+    Leaves: all_of(time, "after"),
     Launched: all_of(speed, "up") | all_of(length, "height"),
     Ground: all_of(length, "height"),
     Capture: all_of(length, "margin", "height", "sink", "lunge_margin", "lunge_most")
