@@ -131,7 +131,8 @@ def is_own(path: Path) -> bool:
 
 def choices(group: str) -> list[str]:
     """The choices of a config group, sorted; empty if there is no such group."""
-    if not group.isidentifier() or group in _NO_GROUPS or not (conf_dir() / group).is_dir():
+    known = group.isidentifier() and group not in _NO_GROUPS
+    if not known or not os.path.isdir(conf_dir() / group):  # of a name of any length
         return []
     return sorted(name for name in named_files(group) if not is_word_of_yaml(name))
 

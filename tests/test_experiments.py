@@ -64,11 +64,11 @@ def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys
     text = (shipped("experiments") / "forward_roll_1.yaml").read_text()
     (tmp_path / "experiments").mkdir()
     file = tmp_path / "experiments" / "wrong.yaml"
-    file.write_text(text.replace("forward_roll_1,", "no_roll,"))
+    file.write_text(text.replace("forward_roll_1,", "nobody,"))
     monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
     assert main(["sweep", "+experiment=wrong", "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert error.startswith('rotctl: behaviour="no_roll": no such choice; valid: ')
+    assert error.startswith('rotctl: behaviour="nobody": no such choice; valid: ')
     assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
 
