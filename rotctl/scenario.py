@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import similar as asking
 from rotctl.config import Config, to_dict
 from rotctl.control import Controller, ControllerSettings

@@ -8,7 +8,7 @@ import pytest
 
 from rotctl.behaviours.compiled_roll import PACE
 from rotctl.behaviours.pacing import PaceSettings
-from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.config import load
 from rotctl.control import compiled
 from rotctl.mechanics import pair_limit

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rotctl.behaviours.rolling import RollingSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged import StagedSettings
 
 BehaviourSettings = Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]

@@ -1,19 +1,17 @@
 """A roll in C: its constants as `native/roll.c` takes them, and its memory to and fro."""
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.pacing import Clock, Pace
+from rotctl.behaviours.remembering import RollingMemory
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.motion import PosePair, ReferencePair
 from rotctl.native.layout import structure
 from rotctl.rotations import Array
-
-if TYPE_CHECKING:  # which makes one of these
-    from rotctl.behaviours.rolling import RollingMemory
 
 PACE = (  # its settings that C takes as they are
     *("travel", "own", "calm", "swing", "swing_from", "surge", "surge_from", "wait", "width"),
@@ -94,7 +92,7 @@ class CompiledRoll:
         return int(array.ctypes.data)
 
 
-def put(memory: "RollingMemory", there: ctypes.Structure) -> None:
+def put(memory: RollingMemory, there: ctypes.Structure) -> None:
     """What a roll remembers, into a structure `RollMemory`."""
     now = memory.excursion
     there.angle[:], there.orientation[:], there.phase = now
@@ -102,7 +100,7 @@ def put(memory: "RollingMemory", there: ctypes.Structure) -> None:
     there.due, there.late = memory.clock
 
 
-def taken(there: ctypes.Structure, before: "RollingMemory") -> "RollingMemory":
+def taken(there: ctypes.Structure, before: RollingMemory) -> RollingMemory:
     """What it remembers now, of which origin and first angle are those of `before`."""
     now = Excursion(np.array(there.angle), np.array(there.orientation), there.phase)
     clock = Clock(there.due, there.late)

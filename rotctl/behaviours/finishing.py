@@ -6,12 +6,14 @@ rises. Until they begin the run is the roll's alone, and what they want is no pa
 
 from dataclasses import field
 from math import tau
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Placement, Signals
+from rotctl.behaviours.remembering import RollingMemory
+from rotctl.behaviours.rolling import Rolling
 from rotctl.behaviours.staged import Staged, StagedMemory, StagedSettings
 from rotctl.behaviours.stages import Stage, TaskSettings
 from rotctl.behaviours.support import pendulum_rate
@@ -22,9 +24,6 @@ from rotctl.mechanics.state import State
 from rotctl.motion import RollAbout
 from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
-
-if TYPE_CHECKING:  # which makes this one
-    from rotctl.behaviours.rolling import Rolling, RollingMemory
 
 
 @validated(frozen=True, config=STRICT)
@@ -64,7 +63,7 @@ class FinishingMemory(NamedTuple):
         end: of the stages; None before they begin.
     """
 
-    roll: "RollingMemory"
+    roll: RollingMemory
     end: StagedMemory | None = None
 
 
@@ -74,7 +73,7 @@ class Finishing:
     def __init__(
         self,
         settings: FinishSettings,
-        roll: "Rolling",
+        roll: Rolling,
         staged: StagedSettings,
         model: Model,
         control: ControllerSettings,
@@ -109,7 +108,7 @@ class Finishing:
             return FinishingMemory(roll, self._end.begin(roll.excursion.phase, state))
         return FinishingMemory(roll)
 
-    def _waits(self, roll: "RollingMemory", state: State) -> bool:
+    def _waits(self, roll: RollingMemory, state: State) -> bool:
         s, momentum = self._settings, state.momentum
         speed = float(dot(self.axes[0], momentum.com_velocity))
         capture = self._roll.ahead(roll, state) + speed / pendulum_rate(self._model, state)

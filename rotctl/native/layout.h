@@ -87,8 +87,8 @@ typedef struct {
   int count;
 } Sums;
 
-// The phase and what goes with it, as a roll remembers them; behaviours/rolling.py. The clock
-// (`due`, `late`) is the pace's.
+// The phase and what goes with it, as a roll remembers them; behaviours/remembering.py. The
+// clock (`due`, `late`) is the pace's.
 typedef struct {
   double angle[3], orientation[4], phase, axis[3], origin[3], first_angle[3], due, late;
 } RollMemory;

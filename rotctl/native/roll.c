@@ -1,4 +1,5 @@
-// behaviours/rolling.py with mechanics/excursion.py: what a roll remembers, and what it wants.
+// behaviours/remembering.py with mechanics/excursion.py: what a roll remembers; behaviours/rolling.py:
+// what it wants.
 #include "layout.h"
 #include "rotations.h"
 #include "small.h"

@@ -1,0 +1,131 @@
+"""What a roll is asked for: its rates, its poses, what keeps it at a pace and how it ends."""
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Strict
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.course import CourseSettings
+from rotctl.behaviours.finishing import Finishing, FinishSettings
+from rotctl.behaviours.pacing import PaceSettings
+from rotctl.behaviours.rolling import Rolling
+from rotctl.control import ControllerSettings
+from rotctl.errors import InputError
+from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.model import Model
+from rotctl.motion import (
+    PosePair,
+    Poses,
+    ReferencePair,
+    ReferenceSettings,
+    RollAbout,
+    load_clip,
+    make_pose_pair,
+    make_reference_pair,
+)
+from rotctl.settings import STRICT, Finite
+
+
+@validated(frozen=True, config=STRICT)
+class RollingSettings:
+    """What Table 1 varies, and the poses: two key poses, or a reference motion.
+
+    Attributes:
+        angular_velocity: commanded in-plane angular velocity [rev/s]; negative is backward.
+        speed: commanded in-plane speed of the centre of mass [m/s].
+        roll_about: the trunk's axis that is kept on the rolling axis, see `FACING`.
+        heading: of the way it rolls, from +x towards +y [deg].
+        angular_momentum: commanded in-plane in place of the angular velocity [kg m2/s]; AV by
+            default, section 7.
+        align_with_slope: whether that speed is along the slope (section 6) or level.
+        pace: how one of the two is kept, whatever the body makes of the pair; none is by default.
+        finish: how a roll with a pace ends.
+        course: where it goes from its heading; straight on by default.
+    """
+
+    name: str
+    kind: Literal["rolling"]
+    roll_about: RollAbout
+    angular_velocity: Finite
+    speed: Finite
+    heading: Finite
+    align_with_slope: Annotated[bool, Strict()]
+    poses: Poses | None = None
+    reference: ReferenceSettings | None = None
+    angular_momentum: Finite | None = None
+    pace: PaceSettings | None = None
+    finish: FinishSettings | None = None
+    course: CourseSettings | None = None
+    source: str = ""
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        if (self.poses is None) == (self.reference is None):
+            raise ValueError("give either poses or a reference, not both and not neither")
+        if self.pace:
+            if min(self.angular_velocity, self.speed) < 0.0:
+                raise ValueError(
+                    "a pace is kept forward: give angular_velocity and speed from 0 on"
+                )
+            if self.angular_momentum is not None:
+                raise ValueError("a pace commands velocities: give no angular_momentum")
+        if self.finish:
+            if self.pace is None:
+                raise ValueError("a roll without a pace does not wait, so that it has no finish")
+            self.finish.staged(self.roll_about, self.heading)
+        if self.course and self.finish:
+            raise ValueError("a roll along a course has no finish: it would stand up aslant")
+        if self.course and self.angular_momentum is not None:
+            raise ValueError("a course commands velocities: give no angular_momentum")
+
+    @property
+    def commanded(self) -> dict[str, float]:
+        """What is asked for, as columns of the summary [rev/s, m/s, s].
+
+        A pace keeps one of the two velocities, so that the other has no column. That of one that
+        a schedule changes is NaN: no number is commanded throughout.
+        """
+        asked = {
+            "angular_velocity_commanded": self.angular_velocity,
+            "speed_commanded": self.speed,
+        }
+        if self.pace:
+            rate, speed = asked
+            kept = rate if self.pace.keep == "rate" else speed
+            asked = {kept: math.nan if self.pace.schedule else asked[kept]}
+        return asked if self.finish is None else asked | {"finish_commanded": self.finish.after}
+
+    def make(
+        self, model: Model, control: ControllerSettings, measured: ExcursionSettings
+    ) -> Rolling | Finishing:
+        """The behaviour of one run."""
+        roll = Rolling(self, model, control, measured)
+        if self.finish is None:
+            return roll
+        staged = self.finish.staged(self.roll_about, self.heading)
+        return Finishing(self.finish, roll, staged, model, control, measured)
+
+    def make_poses(self, model: Model) -> PosePair | ReferencePair:
+        """The poses over the phase.
+
+        Raises:
+            InputError: they do not fit the model, or the clip does not fit the roll.
+        """
+        if self.poses:
+            return make_pose_pair(model, self.poses)
+        assert self.reference  # __post_init__
+        reference = self.reference
+        clip = load_clip(reference.clip)
+        if clip.roll_about != self.roll_about:
+            raise InputError(
+                f"behaviour.reference.clip={reference.clip}: rolls about {clip.roll_about}, "
+                f"but behaviour.roll_about={self.roll_about}"
+            )
+        if reference.found_for not in ("", clip.name):
+            raise InputError(
+                f"behaviour.reference.clip={reference.clip}: is {clip.name}, and window, lead and "
+                f"offsets were found for {reference.found_for}; give the path of that clip, or "
+                "behaviour.reference.found_for='' to bend another by them"
+            )
+        return make_reference_pair(model, clip, reference)
