@@ -25,9 +25,11 @@ def readable(summary: dict[str, Any]) -> str:
 
     def number(key: str, form: str = ".2f") -> str:
         value = summary.get(key)
-        if isinstance(value, str):
-            return one_line(value)
         return format(value, form) if isinstance(value, int | float) else "-"
+
+    def shown(key: str) -> str:
+        value = summary[key]
+        return one_line(value) if isinstance(value, str) else number(key, ".3g")
 
     name, seed, run, reason = (
         one_line(str(summary.get(key, "-")))
@@ -54,7 +56,7 @@ def readable(summary: dict[str, Any]) -> str:
 
         known = [column for key, column in COLUMNS.items() if key in summary]
         wide = max((len(column.title) for column in known), default=0)
-        measured = [f"  {c.title:{wide}}  {number(c.name, '.3g')} {c.unit}".rstrip() for c in known]
+        measured = [f"  {c.title:{wide}}  {shown(c.name)} {c.unit}".rstrip() for c in known]
     return "\n".join(
         [
             f"{name}  seed {seed}  run {run}  {verdict}",

@@ -42,7 +42,7 @@ def words(line, capsys):
         ("rotctl run behaviour.reference.clip=back", ["behaviour.reference.clip=backward_roll"]),
         ("rotctl export runs/a/run.h5 --to g", ["gltf"]),
         ("rotctl new beh", ["behaviour"]),
-        ("rotctl new behaviour mine --from back_", ["back_flip"]),
+        ("rotctl new behaviour mine --from back_", ["back_flip", "back_handspring"]),
         ("rotctl tune clip_t", ["clip_terrain"]),
         ("rotctl completion f", ["fish"]),
         ("rotctl render ", []),  # a file: the shell's own business

@@ -11,6 +11,7 @@ from rotctl.cli import main
 from rotctl.errors import LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import SCHEMA_VERSION, names_of
+from rotctl.meant import meant
 from rotctl.report import stored_model
 from rotctl.report.signals import linear_rates, signals
 
@@ -52,7 +53,8 @@ def test_what_it_does_not_have_is_said(path, name):
         with pytest.raises(LogError) as caught:
             ask(name)
         assert str(caught.value) == (
-            f"{path}: no dataset {name!r}; valid names: {', '.join(log.names)}"
+            f"{path}: no dataset {name!r}; {meant(name, log.names)}"
+            f"valid names: {', '.join(log.names)}"
         )
 
 

@@ -35,7 +35,7 @@ def test_what_is_like_none_of_them_has_no_hint(word):
         ),
         (["run", "behaviour=back_flip", "behaviour.shape=tukc"], "did you mean tuck? valid: tuck"),
         (["sweep", "+experiment=tabel1", "--out=x"], "no such experiment; did you mean table1? "),
-        (["tune", "clips", "--out=x"], "no such space; did you mean clip? valid: clip, "),
+        (["tune", "clips", "--out=x"], "no such space; did you mean clip? valid: ablation, clip, "),
         (
             ["new", "behaviors", "a", "--from", "b"],
             "no such kind of file; did you mean behaviour? ",

@@ -267,7 +267,7 @@ def test_minutes_are_kept_but_one_generation_is_tried(space, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["nope"], "rotctl: nope: no such space; valid: clip, clip_one_shoulder, clip_terrain, "),
+        (["nope"], "rotctl: nope: no such space; valid: ablation, clip, clip_one_shoulder, "),
         (["rolling_gains", "--seed", "-1"], "rotctl: --seed=-1: must be 0 to 999,999"),
         (["rolling_gains", "--trials", "0"], "rotctl: --trials=0: must be above 0"),
         (["rolling_gains", "--minutes", "nan"], "rotctl: --minutes=nan: must be above 0"),
