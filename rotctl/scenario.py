@@ -147,6 +147,9 @@ def require_fit(config: Config, model: Model) -> None:
     stands = getattr(config.criteria, "landing", getattr(config.criteria, "stand", config.criteria))
     for name in getattr(stands, "feet", ()):
         models.body_id(model.mj, name, "criteria.feet")
+    for group in getattr(config.criteria, "order", ()):
+        for name in group:
+            models.body_id(model.mj, name, "criteria.order")
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
         raise InputError(
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "

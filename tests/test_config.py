@@ -16,6 +16,7 @@ from rotctl.config import check, composed, load, to_dict, to_yaml
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir, groups
 from rotctl.overrides import single
+from rotctl.scenario import build
 
 GROUPS = (
     "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "
@@ -472,3 +473,24 @@ def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text
     monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
     (tmp_path / "package").mkdir()
     assert choosing.composed([simple("start=rest")]) is None
+
+
+@pytest.mark.parametrize(
+    ("angle", "said"),
+    [
+        ("[0.1,0.2]", "behaviour.poses.a.knee=[0.1, 0.2]: too few values, at least 3"),
+        ("[0,0,0,0]", "must be a mean with pairs of cosine and sine, not 4 numbers"),
+        ("[0,20,0]", "behaviour.poses.a.knee[1]=20: must be less than or equal to 10"),
+        ("high", 'behaviour.poses.a.knee="high": must be a valid number'),
+    ],
+)
+def test_what_is_wrong_with_an_angle_is_told(angle, said):
+    with pytest.raises(InputError) as caught:
+        load(["behaviour=forward_roll_1", f"behaviour.poses.a.knee={angle}"])
+    assert said in str(caught.value)
+
+
+def test_an_order_names_bodies_that_are_there():
+    for order, said in (("[[nose]]", "unknown body 'nose'"), ("[]", "too few values")):
+        with pytest.raises(InputError, match=said):
+            build(load(["behaviour=back_handspring", f"criteria.order={order}"]))

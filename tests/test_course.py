@@ -7,7 +7,7 @@ import pytest
 
 from rotctl.behaviours.course import Course, Going, PathSettings, RatesSettings
 from rotctl.config import load
-from rotctl.errors import InputError
+from rotctl.errors import InputError, LogError
 from rotctl.mechanics import excursion
 from rotctl.metrics.columns import along_way, in_frame, turns
 from rotctl.metrics.judge import judge
@@ -173,3 +173,15 @@ def test_a_way_that_does_not_turn_is_as_before():
     log, _ = rolled("behaviour.heading=30", "duration=0.5")
     assert not turns(log)
     assert (along_way(log) == in_frame(log, "trajectory/com")).all()
+
+
+def test_a_log_that_turns_and_has_no_way_is_told():
+    row = np.eye(3)
+    log = {
+        "command/axes": np.array([row, row[[1, 0, 2]]]),
+        "trajectory/com": np.zeros((2, 3)),
+        "command/target": np.zeros((2, 1, 4)),
+        "model/task": np.array([b"spin"]),
+    }
+    with pytest.raises(LogError, match="no task linear, which tells the way"):
+        along_way(log)

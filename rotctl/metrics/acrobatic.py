@@ -2,8 +2,9 @@
 
 import math
 from dataclasses import asdict, replace
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import flip, standing
@@ -16,6 +17,8 @@ COLUMNS = (
     Column("touched", "What came down, and when [s]", ""),
     Column("bears_most", "Largest upward force of the ground, mean of a control step", "N"),
 )
+
+Group = Annotated[tuple[str, ...], Field(min_length=1, max_length=20)]
 
 
 @validated(frozen=True, config=STRICT)
@@ -33,7 +36,7 @@ class AcrobaticCriteria:
 
     name: str
     kind: Literal["acrobatic"]
-    order: tuple[tuple[str, ...], ...]
+    order: Annotated[tuple[Group, ...], Field(min_length=1, max_length=20)]
     turn: Positive
     landing: StandingCriteria
     about: Literal["left", "up"] = "left"

@@ -7,6 +7,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.errors import LogError
+
 ALL_FAILED = 2  # of the dataset solver/status
 
 
@@ -76,6 +78,18 @@ def along_frame(
     return vectors[:, :1] * x + vectors[:, 1:2] * y + vectors[:, 2:] * z
 
 
+def nearest_places(log: Arrays) -> NDArray[np.float64]:
+    """Of a way that turns the nearest place (steps, 3) [m]: what the task `linear` aims at.
+
+    Raises:
+        LogError: there is no such task.
+    """
+    tasks = np.asarray(log["model/task"]).tolist()
+    if b"linear" not in tasks:
+        raise LogError("model/task: no task linear, which tells the way that is rolled along")
+    return floats(log, "command/target")[:, tasks.index(b"linear"), :3]
+
+
 def along_way(log: Arrays) -> NDArray[np.float64]:
     """The centre of mass (steps, 3): how far along its way, left of it, and high [m].
 
@@ -86,8 +100,7 @@ def along_way(log: Arrays) -> NDArray[np.float64]:
     if not turns(log):
         return com
     place = floats(log, "trajectory/com")
-    task = np.asarray(log["model/task"]).tolist().index(b"linear")
-    off = place - floats(log, "command/target")[:, task, :3]
+    off = place - nearest_places(log)
     off[:, 2] = 0.0
     side = np.sign(along_frame(log, off)[:, 1])
     ahead = along_frame(log, np.diff(place, axis=0), slice(0, -1))[:, 0]

@@ -12,7 +12,7 @@ from math import cos, sin
 from typing import Annotated
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.model import Model
@@ -29,8 +29,18 @@ def _pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
     return waves
 
 
-Waves = Annotated[tuple[Turn, ...], Field(min_length=3, max_length=constant("WAVES"))]
-Angle = Turn | Annotated[Waves, AfterValidator(_pairs_after_a_mean)]
+def _form(angle: object) -> str:
+    return "waves" if isinstance(angle, list | tuple) else "turn"
+
+
+Waves = Annotated[
+    tuple[Turn, ...],
+    Field(min_length=3, max_length=constant("WAVES")),
+    AfterValidator(_pairs_after_a_mean),
+]
+Angle = Annotated[
+    Annotated[Turn, Tag("turn")] | Annotated[Waves, Tag("waves")], Discriminator(_form)
+]
 
 
 @validated(frozen=True, config=STRICT)

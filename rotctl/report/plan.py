@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from rotctl.log import RunLog
-from rotctl.metrics.columns import floats, turns
+from rotctl.metrics.columns import floats, nearest_places, turns
 from rotctl.report import axes as draw
 from rotctl.report.frame import turns_done
 from rotctl.report.plot import heading, write
@@ -42,8 +42,8 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
         figure.add_gridspec(1, 1, left=0.1, right=0.935, top=0.88, bottom=0.09)[0]
     )
     place, time = floats(log, "trajectory/com")[rows, :2], log["trajectory/time"][rows]
-    if turns(log):
-        way = _way(log)[rows]
+    way = nearest_places(log)[rows, :2] if turns(log) else place
+    if (way != place).any():  # rates alone are a way without places
         axes.plot(*way.T, color=draw.BLACK, ls="--", lw=0.9, label="the way")
     axes.plot(*place.T, color=draw.BLUE, lw=1.0, label="centre of mass")
     axis = floats(log, "trajectory/trunk_axis")[rows, :2]
@@ -62,12 +62,6 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
     draw.legend(axes, right=1.0)
-
-
-def _way(log: RunLog) -> Array:
-    """Nearest places (n, 2) of the way that it follows [m]."""
-    task = np.asarray(log["model/task"]).tolist().index(b"linear")
-    return floats(log, "command/target")[:, task, :2]
 
 
 def _whole(turned: Array) -> list[int]:
