@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING
 
 from rotctl import listing
 from rotctl import run as runs
-from rotctl.config import Config
 from rotctl.config import load as composed
 from rotctl.log import LOG_NAME, RunLog
+from rotctl.schema import Config
 
 if TYPE_CHECKING:
     import pandas as pd

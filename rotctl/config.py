@@ -1,4 +1,4 @@
-"""Configs: composed by Hydra from `conf/`, then checked once into frozen dataclasses.
+"""Configs: composed by Hydra from `conf/` and overrides, or read from a log, and then checked.
 
 Hydra gives the groups and the override syntax; nothing is instantiated from a config and
 no `_target_` or resolver is honoured, in overrides and in files, so that a stranger's config
@@ -6,68 +6,22 @@ cannot execute code or look anything up.
 """
 
 import copy
-import json
-import re
-from collections.abc import Callable, Mapping
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Callable
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
-
-import yaml
-from pydantic import Field, Strict, TypeAdapter, ValidationError
-from pydantic.dataclasses import dataclass as validated
+from typing import TYPE_CHECKING, Any
 
 from rotctl import choosing, documents, own_body
-from rotctl.behaviours import BehaviourSettings
-from rotctl.checked import brief, checked, clip, unknown_key
 from rotctl.choosing import Assignment, simple
-from rotctl.control import ControllerSettings
-from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, folders, is_own, named_file, own_dir, require_plain
 from rotctl.log import RunLog
-from rotctl.mechanics.character import Character
-from rotctl.mechanics.disturbance import DisturbanceSettings
-from rotctl.mechanics.excursion import ExcursionSettings
-from rotctl.mechanics.physics import Physics
-from rotctl.mechanics.plant import PlantSettings
-from rotctl.mechanics.terrain import Terrain
-from rotctl.metrics.judge import Criteria
-from rotctl.plain import NOTHING, Way, dotted, exchanged, leaves, member, put, way
-from rotctl.same import kept
-from rotctl.settings import SPARSE, STRICT, Positive
-from rotctl.simulation.start import StartSettings
+from rotctl.plain import NOTHING, exchanged, way
+from rotctl.schema import Config, check
+from rotctl.written import to_dict
 
 if TYPE_CHECKING:
     from hydra.core.override_parser.types import Override
-
-PROSE = ("description", "source")  # may have several lines
-LONGEST_TEXT = 200
-LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
-
-
-@validated(frozen=True, config=STRICT)
-class Config:
-    """Everything that determines a run.
-
-    Attributes:
-        seed: of the run's random generator.
-        duration: simulated time [s].
-    """
-
-    behaviour: BehaviourSettings
-    character: Character
-    controller: ControllerSettings
-    criteria: Criteria
-    disturbance: DisturbanceSettings
-    excursion: ExcursionSettings
-    physics: Physics
-    plant: PlantSettings
-    start: StartSettings
-    terrain: Terrain
-    seed: Annotated[int, Strict(), Field(ge=0, lt=2**63)]
-    duration: Annotated[Positive, Field(le=3600)]
 
 
 def load(overrides: list[str]) -> Config:
@@ -144,10 +98,10 @@ def _composed(overrides: list[str]) -> dict[str, Any]:
         data = _set_on_choices(quick)
         if data is not None:
             return data
-    from rotctl.overrides import assigned, single
+    from rotctl.overrides import assigned, is_choice, single
 
     found = [single(override) for override in overrides]
-    require_plain([(str(o.key_or_group), str(o.value())) for o in found if _is_choice(o)])
+    require_plain([(str(o.key_or_group), str(o.value())) for o in found if is_choice(o)])
     quick = [one for one in map(assigned, found) if one]
     if len(quick) == len(overrides):
         data = _set_on_choices(quick)
@@ -205,6 +159,8 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     from omegaconf import OmegaConf
     from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 
+    from rotctl.explained import explain
+
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):
@@ -215,7 +171,7 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     except RecursionError:
         raise InputError(choosing.IN_A_CIRCLE) from None
     except (HydraException, OmegaConfBaseException, ValueError) as error:
-        raise InputError(_explain(error, found)) from None
+        raise InputError(explain(error, found, _changed_by(found))) from None
     return data
 
 
@@ -226,187 +182,12 @@ def _searched() -> list[str]:
     return [f"hydra.searchpath=['file://{quoted}']"] if mine else []
 
 
-def check(data: Any) -> Config:
-    """Plain data to a typed config.
+def _changed_by(overrides: "list[Override]") -> dict[str, Any]:
+    """The config that some overrides are to change: what the choices among them make."""
+    from rotctl.overrides import is_choice
 
-    Raises:
-        InputError: one line for the first thing that is wrong.
-    """
-    _refuse(data, _absurd_text)  # before messages of other checks repeat it
-    found = checked(Config, data)
-    _refuse(data, _absurd_number)
-    return found
-
-
-def changed(config: Config, parts: Mapping[str, Any]) -> Config:
-    """The same with other plain data for some of its parts; what stays is not checked again.
-
-    Args:
-        parts: by their names, such as `controller` or `seed`.
-
-    Raises:
-        InputError: one line for the first thing that is wrong with them.
-    """
-    made: dict[str, Any] = {name: _part(config, name, data) for name, data in parts.items()}
-    return replace(config, **made)
-
-
-@kept(most=1000)
-def _part(config: Config, name: str, data: Any) -> Any:
-    try:
-        found = _adapter(name).validate_python(data)
-    except ValidationError:
-        return getattr(check({**to_dict(config), name: data}), name)  # which tells what is wrong
-    for absurd in (_absurd_text, _absurd_number):
-        _refuse({name: data}, absurd)
-    return found
-
-
-@cache
-def _adapter(name: str) -> TypeAdapter[Any]:
-    """Of the type of a config's part."""
-    return TypeAdapter(get_type_hints(Config, include_extras=True)[name])
-
-
-def _refuse(data: Any, absurd: Callable[[Way, Any], str]) -> None:
-    """Raises InputError for the first value that no run, picture or terminal could use."""
-    for parts, value in leaves(data):
-        if complaint := absurd(parts, value):
-            shown = [clip(part) if isinstance(part, str) else part for part in parts]
-            raise InputError(f"{dotted(shown)}={brief(value)}: {complaint}")
-
-
-def _absurd_text(parts: Way, value: Any) -> str:
-    """What is wrong with a text or the keys that lead to a value; mostly nothing."""
-    if any(not _short(part) for part in parts):
-        return f"a key must be printable and have at most {LONGEST_TEXT} characters"
-    if not isinstance(value, str):
-        return ""
-    if parts and parts[-1] in PROSE:
-        return "must have no control characters" if UNPRINTABLE.search(value) else ""
-    if not _short(value):
-        return f"must be printable, on one line of at most {LONGEST_TEXT} characters"
-    return "must not be empty" if parts and parts[-1] == "name" and not value.strip() else ""
-
-
-def _short(text: object) -> bool:
-    return len(str(text)) <= LONGEST_TEXT and _printable(str(text))
-
-
-@lru_cache(maxsize=10_000)  # of the same keys, again and again
-def _printable(text: str) -> bool:
-    return text.isprintable()
-
-
-def _absurd_number(parts: Way, value: Any) -> str:
-    large = isinstance(value, int | float) and abs(value) > LARGEST and parts != ("seed",)
-    return f"must be at most {LARGEST:g} in size" if large else ""
-
-
-def to_dict(config: Config) -> dict[str, Any]:
-    """The config as plain data, which nobody may change."""
-    parts = {part.name: getattr(config, part.name) for part in fields(config)}
-    return {name: _plain_part(part) for name, part in parts.items()}
-
-
-@kept(most=1000)
-def _plain_part(part: Any) -> Any:
-    return _plain_data(part)
-
-
-@cache
-def _names(shape: Any) -> tuple[tuple[str, bool], ...]:
-    return tuple((part.name, part.metadata == SPARSE) for part in fields(shape))
-
-
-def _plain_data(value: Any) -> Any:
-    """As pydantic dumps it, whose serialisers take longer to build than a run needs them."""
-    if is_dataclass(value):
-        shape: Any = type(value)
-        parts = [(name, getattr(value, name), sparse) for name, sparse in _names(shape)]
-        return {name: _plain_data(it) for name, it, sparse in parts if it is not None or not sparse}
-    if isinstance(value, dict):
-        return {key: _plain_data(inner) for key, inner in value.items()}
-    if isinstance(value, list | tuple):
-        return type(value)(map(_plain_data, value))
-    return value
-
-
-def to_yaml(config: Config) -> str:
-    """The config as YAML, in the order of the schema."""
-    return "".join(_yaml(json.dumps({part: value})) for part, value in to_dict(config).items())
-
-
-def part_to_yaml(config: Config, key: str) -> str:
-    """What is under a key, as YAML.
-
-    Raises:
-        InputError: there is no such key.
-    """
-    place: Any = to_dict(config)
-    parts = way(key)
-    for depth, part in enumerate(parts):
-        inner = member(place, part)
-        if inner is NOTHING:
-            valid = list(place) if isinstance(place, dict) else ["none, it is a value"]
-            raise InputError(unknown_key(key, dotted(parts[:depth]), valid))
-        place = inner
-    return _yaml(json.dumps({parts[-1]: place})) if parts else to_yaml(config)
-
-
-@lru_cache(maxsize=256)
-def _yaml(part: str) -> str:
-    """A part of a config from JSON to YAML; most parts are the same in many runs."""
-    data = json.loads(part)
-    (value,) = data.values()
-    flow = None if isinstance(value, dict) else False  # short lists stay on one line
-    return yaml.safe_dump(data, sort_keys=False, default_flow_style=flow, width=100)
-
-
-def _is_choice(override: "Override") -> bool:
-    return bool(choices(str(override.key_or_group))) and isinstance(override.value(), str)
-
-
-def _explain(error: Exception, overrides: "list[Override]") -> str:
-    """What Hydra could not do, in one line of our own."""
-    chosen = tuple(str(o.input_line) for o in overrides if _is_choice(o))
-    valid = _plain(chosen if len(chosen) < len(overrides) else ())  # () is the default
-    named = re.search(r"(?:override|at) '?([^\s'=]+)", str(error))
-    suspects = [o for o in overrides if not named or o.key_or_group == named[1]] or overrides
-    for override in suspects:
-        complaint = _complaint(override, valid)
-        if complaint:
-            return complaint
-    return clip(" ".join(str(error).split()))
-
-
-def _complaint(override: "Override", valid: dict[str, Any]) -> str:
-    """Why an override does not fit a config; empty if it does."""
-    key = str(override.key_or_group)
-    if choices(key) and key not in valid:
-        return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
-    if override.package:
-        return unknown_key(f"{key}@{override.package}", "", list(valid))
-    place, parts = valid, way(key)
-    for depth, part in enumerate(parts):
-        inner = member(place, part)
-        if inner is NOTHING:
-            none = f"none, it is {'null' if place is None else 'a value'}"
-            some = list(place) if isinstance(place, dict) else [none]
-            return unknown_key(key, dotted(parts[:depth]), some)
-        place = inner
-    if override.is_delete():
-        return ""
-    value = override.value()
-    if override.is_add():
-        return f"{key} is there already; write {key}=VALUE"
-    if _is_choice(override):  # which is one of those that there are
-        return ""
-    try:
-        check(put(valid, parts, value))
-    except InputError as error:
-        return str(error)
-    return f"{key}={brief(value)}: has keys that are not there yet; write +{key}=VALUE"
+    chosen = tuple(str(o.input_line) for o in overrides if is_choice(o))
+    return _plain(chosen if len(chosen) < len(overrides) else ())  # () is the default
 
 
 @cache

@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-from rotctl.config import to_yaml
 from rotctl.log import TrajectoryBuffer, collect, encode_run
 from rotctl.log.digest import simulated
 from rotctl.log.writer import whole
 from rotctl.run_folder import EncodedRun
 from rotctl.scenario import Scenario
 from rotctl.summary import Summary, summarise
+from rotctl.written import to_yaml
 
 
 def encoded(

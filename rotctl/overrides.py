@@ -93,3 +93,8 @@ def assigned(found: Override) -> Assignment | None:
     if found.type != OverrideType.CHANGE or found.package or MISSING in str(found.input_line):
         return None
     return Assignment(str(found.key_or_group), found.value())
+
+
+def is_choice(override: Override) -> bool:
+    """Whether it chooses among the files of a group."""
+    return bool(choices(str(override.key_or_group))) and isinstance(override.value(), str)

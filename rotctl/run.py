@@ -12,7 +12,6 @@ import numpy as np
 
 from rotctl import files
 from rotctl.checkpoint import Checkpoints
-from rotctl.config import Config, to_dict, to_yaml
 from rotctl.control import Controller
 from rotctl.documents import from_yaml
 from rotctl.encoding import encoded
@@ -22,8 +21,10 @@ from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
 from rotctl.scenario import Making, Scenario, acting, build
+from rotctl.schema import Config
 from rotctl.simulation.loop import Look, nobody, simulate
 from rotctl.summary import Summary, broke_down, judged_again
+from rotctl.written import to_dict, to_yaml
 
 
 @dataclass(frozen=True)

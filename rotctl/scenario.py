@@ -13,7 +13,6 @@ import numpy as np
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import similar as asking
-from rotctl.config import Config, to_dict
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similar import similar
 from rotctl.errors import InputError
@@ -28,12 +27,14 @@ from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
+from rotctl.schema import Config
 from rotctl.settings import ends
 from rotctl.simulation import falling
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
+from rotctl.written import to_dict
 
 DESCRIPTIVE = ("description", "source", "colour", "found_for")
 

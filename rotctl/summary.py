@@ -4,12 +4,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rotctl.config import Config
 from rotctl.log import RunLog, TrajectoryBuffer
 from rotctl.mechanics.model import Model
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario, model_of, require_fit
+from rotctl.schema import Config
 
 Summary = dict[str, Any]
 BROKE_DOWN, LEFT = "physics", "left the ground"  # how reasons begin that no criteria give

@@ -7,10 +7,10 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from rotctl.config import check
 from rotctl.log import collect
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.schema import check
 from rotctl.summary import summarise
 
 

@@ -7,11 +7,12 @@ from math import atan2, degrees, pi, tau
 import mujoco
 import numpy as np
 
-from rotctl.config import check, composed
+from rotctl.config import composed
 from rotctl.mechanics.model import is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.rotations import quaternion_from_rotation_vector
 from rotctl.scenario import build
+from rotctl.schema import check
 from rotctl.simulation.episode import Episode
 
 LEFT = np.array([0.0, 1.0, 0.0])

@@ -8,7 +8,7 @@ import pytest
 from both import along
 from questions import Asking, any_task
 
-from rotctl.config import check, load, to_dict
+from rotctl.config import load
 from rotctl.control import Controller, compiled, literal
 from rotctl.control.compiled import CompiledStep
 from rotctl.control.kinds import KINDS, Kind, Rows
@@ -17,8 +17,10 @@ from rotctl.control.stack import collect
 from rotctl.mechanics.state import read
 from rotctl.plain import put, way
 from rotctl.scenario import build
+from rotctl.schema import check
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
+from rotctl.written import to_dict
 
 pytestmark = pytest.mark.skipif(
     compiled.library() is None,

@@ -12,11 +12,13 @@ import yaml
 from rotctl import choosing, listing
 from rotctl.choosing import simple
 from rotctl.config import _by_hydra as by_hydra
-from rotctl.config import check, composed, load, to_dict, to_yaml
+from rotctl.config import composed, load
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir, groups
 from rotctl.overrides import single
 from rotctl.scenario import build
+from rotctl.schema import check
+from rotctl.written import to_dict, to_yaml
 
 GROUPS = (
     "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "

@@ -6,10 +6,11 @@ import pytest
 
 from rotctl.behaviours.landing import Landing
 from rotctl.behaviours.support import ends, middle
-from rotctl.config import check, composed, load
+from rotctl.config import composed, load
 from rotctl.errors import InputError
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.schema import check
 from rotctl.simulation.start import place
 from rotctl.summary import summarise
 

@@ -6,10 +6,11 @@ from typing import get_args, get_type_hints
 import pytest
 
 from rotctl.behaviours.aims import Aim
-from rotctl.config import check, composed
+from rotctl.config import composed
 from rotctl.control.kinds import KINDS
 from rotctl.errors import LONGEST, InputError, LogError
 from rotctl.scenario import build
+from rotctl.schema import check
 from rotctl.simulation.episode import Episode
 
 STAND = ["behaviour=stand", "duration=1"]

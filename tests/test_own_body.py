@@ -9,10 +9,11 @@ from test_adopt import text
 
 from rotctl import listing
 from rotctl.cli import main
-from rotctl.config import load, to_dict
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.run import make, run
 from rotctl.scenario import build
+from rotctl.written import to_dict
 
 INLINE = "character={kind: mjcf, file: robot.xml}"
 

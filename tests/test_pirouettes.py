@@ -7,11 +7,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import frame_of
-from rotctl.config import check, composed, load
+from rotctl.config import composed, load
 from rotctl.errors import InputError
 from rotctl.metrics.flip import judge, longest_flight, turn
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.schema import check
 
 PERIOD = 1 / 240
 

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import check, load, to_dict
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import model as models
@@ -16,8 +16,10 @@ from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
 from rotctl.run import LOG_NAME, run
 from rotctl.scenario import build, model_of
+from rotctl.schema import check
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
+from rotctl.written import to_dict
 
 ENDLESS = ["flat", "incline", "decline"]
 FINITE = ["uneven", "bumps", "stairs_down", "stairs_up", "obstacles"]

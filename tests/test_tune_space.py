@@ -6,7 +6,7 @@ import os
 import pytest
 import yaml
 
-from rotctl.config import load, to_dict
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.listing import conf_dir
 from rotctl.metrics.expression import NAMES
@@ -20,6 +20,7 @@ from rotctl.tune.values import (
     training_seeds,
     variations,
 )
+from rotctl.written import to_dict
 
 GAINS = conf_dir() / "tune" / "rolling_gains.yaml"
 DRAWN = "tune draws the seeds of its runs itself, from 1,000,000 on; those below are for judging"

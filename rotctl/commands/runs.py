@@ -175,7 +175,8 @@ def add_show(commands: Commands) -> None:
 
 def show(arguments: argparse.Namespace) -> int:
     """Print the composed config."""
-    from rotctl.config import load, part_to_yaml, to_yaml
+    from rotctl.config import load
+    from rotctl.written import part_to_yaml, to_yaml
 
     config = load(arguments.overrides)
     print(part_to_yaml(config, arguments.part) if arguments.part else to_yaml(config), end="")

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl.checked import unknown_key
-from rotctl.config import check, composed
+from rotctl.config import composed
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.evaluation import evaluate
@@ -18,6 +18,7 @@ from rotctl.overrides import assigned, single
 from rotctl.plain import NOTHING, Way, exchanged, way
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import Table, tabulated
+from rotctl.schema import check
 from rotctl.summary import Summary, judged_again
 from rotctl.sweep.engines import Engine, Failure
 

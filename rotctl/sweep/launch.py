@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rotctl.config import to_dict
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
 from rotctl.results import manifest
@@ -22,6 +21,7 @@ from rotctl.summary import Summary, broke_down
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned
 from rotctl.sweep.task import carry_out, ordered
+from rotctl.written import to_dict
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rotctl.config import Config
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, RunLog, collect
 from rotctl.results import index
@@ -16,6 +15,7 @@ from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
 from rotctl.run import by_other_criteria, same_criteria
 from rotctl.run_folder import has_all_beside, open_published, publish
 from rotctl.scenario import model_of, run_id
+from rotctl.schema import Config
 from rotctl.summary import Summary
 from rotctl.sweep.keep import Keep, kept
 from rotctl.sweep.points import Point

@@ -12,10 +12,12 @@ from math import prod
 from typing import Any
 
 from rotctl import plain
-from rotctl.config import Config, changed, load, to_dict
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.results.keys import value_at
+from rotctl.schema import Config, changed
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
+from rotctl.written import to_dict
 
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]

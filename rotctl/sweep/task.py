@@ -9,11 +9,11 @@ from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from rotctl.config import Config
 from rotctl.control import Controller
 from rotctl.run import simulated
 from rotctl.run_folder import EncodedRun
 from rotctl.same import kept
+from rotctl.schema import Config
 from rotctl.sweep import keep
 
 NAMES = tuple(part.name for part in fields(Config))

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from math import acos, degrees, nan, pi
 
 from rotctl.behaviours.rolling_settings import RollingSettings
-from rotctl.config import Config
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
 from rotctl.metrics.columns import Arrays
@@ -15,6 +14,7 @@ from rotctl.metrics.rolling import RollingCriteria
 from rotctl.rotations import dot
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.schema import Config
 from rotctl.simulation.loop import Look
 from rotctl.tune.objective import TrialRun
 from rotctl.tune.space import Stopping

@@ -4,10 +4,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rotctl import plain
-from rotctl.config import Config, check, load, to_dict
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.plain import NOTHING, dotted, member, way
+from rotctl.schema import Config, check
 from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
+from rotctl.written import to_dict
 
 Values = dict[str, float]  # key -> value, in the order of the space
 BLOCK = 1_000_000  # training seeds of one search

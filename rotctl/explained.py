@@ -1,0 +1,61 @@
+"""Why overrides make no config: which of them it is, and what would be valid.
+
+Hydra's own messages speak of its structures and of Python's types; here an override is held
+against the config that it was to change.
+"""
+
+import re
+from typing import Any
+
+from hydra.core.override_parser.types import Override
+
+from rotctl.checked import brief, clip, unknown_key
+from rotctl.errors import InputError
+from rotctl.listing import choices
+from rotctl.overrides import is_choice
+from rotctl.plain import NOTHING, dotted, member, put, way
+from rotctl.schema import check
+
+
+def explain(error: Exception, overrides: list[Override], valid: dict[str, Any]) -> str:
+    """What Hydra could not do, in one line of our own.
+
+    Args:
+        valid: the config that the overrides were to change, as plain data.
+    """
+    named = re.search(r"(?:override|at) '?([^\s'=]+)", str(error))
+    suspects = [o for o in overrides if not named or o.key_or_group == named[1]] or overrides
+    for override in suspects:
+        complaint = _complaint(override, valid)
+        if complaint:
+            return complaint
+    return clip(" ".join(str(error).split()))
+
+
+def _complaint(override: Override, valid: dict[str, Any]) -> str:
+    """Why an override does not fit a config; empty if it does."""
+    key = str(override.key_or_group)
+    if choices(key) and key not in valid:
+        return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
+    if override.package:
+        return unknown_key(f"{key}@{override.package}", "", list(valid))
+    place, parts = valid, way(key)
+    for depth, part in enumerate(parts):
+        inner = member(place, part)
+        if inner is NOTHING:
+            none = f"none, it is {'null' if place is None else 'a value'}"
+            some = list(place) if isinstance(place, dict) else [none]
+            return unknown_key(key, dotted(parts[:depth]), some)
+        place = inner
+    if override.is_delete():
+        return ""
+    value = override.value()
+    if override.is_add():
+        return f"{key} is there already; write {key}=VALUE"
+    if is_choice(override):  # which is one of those that there are
+        return ""
+    try:
+        check(put(valid, parts, value))
+    except InputError as error:
+        return str(error)
+    return f"{key}={brief(value)}: has keys that are not there yet; write +{key}=VALUE"

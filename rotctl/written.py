@@ -1,0 +1,80 @@
+"""Frozen settings to plain data and to YAML: the way back from `rotctl.checked`.
+
+A run is known by the hash of what its config is written as.
+"""
+
+import json
+from dataclasses import fields, is_dataclass
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from rotctl.checked import unknown_key
+from rotctl.errors import InputError
+from rotctl.plain import NOTHING, dotted, member, way
+from rotctl.same import kept
+from rotctl.settings import SPARSE
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+
+def to_dict(settings: "DataclassInstance") -> dict[str, Any]:
+    """The settings as plain data, which nobody may change."""
+    parts = {part.name: getattr(settings, part.name) for part in fields(settings)}
+    return {name: _plain_part(part) for name, part in parts.items()}
+
+
+@kept(most=1000)
+def _plain_part(part: Any) -> Any:
+    return _plain_data(part)
+
+
+@cache
+def _names(shape: Any) -> tuple[tuple[str, bool], ...]:
+    return tuple((part.name, part.metadata == SPARSE) for part in fields(shape))
+
+
+def _plain_data(value: Any) -> Any:
+    """As pydantic dumps it, whose serialisers take longer to build than a run needs them."""
+    if is_dataclass(value):
+        shape: Any = type(value)
+        parts = [(name, getattr(value, name), sparse) for name, sparse in _names(shape)]
+        return {name: _plain_data(it) for name, it, sparse in parts if it is not None or not sparse}
+    if isinstance(value, dict):
+        return {key: _plain_data(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return type(value)(map(_plain_data, value))
+    return value
+
+
+def to_yaml(settings: "DataclassInstance") -> str:
+    """The settings as YAML, in the order of their fields."""
+    return "".join(_yaml(json.dumps({part: value})) for part, value in to_dict(settings).items())
+
+
+def part_to_yaml(settings: "DataclassInstance", key: str) -> str:
+    """What is under a key, as YAML.
+
+    Raises:
+        InputError: there is no such key.
+    """
+    place: Any = to_dict(settings)
+    parts = way(key)
+    for depth, part in enumerate(parts):
+        inner = member(place, part)
+        if inner is NOTHING:
+            valid = list(place) if isinstance(place, dict) else ["none, it is a value"]
+            raise InputError(unknown_key(key, dotted(parts[:depth]), valid))
+        place = inner
+    return _yaml(json.dumps({parts[-1]: place})) if parts else to_yaml(settings)
+
+
+@lru_cache(maxsize=256)
+def _yaml(part: str) -> str:
+    """A part of them from JSON to YAML; most parts are the same in many runs."""
+    data = json.loads(part)
+    (value,) = data.values()
+    flow = None if isinstance(value, dict) else False  # short lists stay on one line
+    return yaml.safe_dump(data, sort_keys=False, default_flow_style=flow, width=100)
