@@ -280,5 +280,6 @@ def tune(arguments: argparse.Namespace) -> int:
         outcome = tune(search, arguments.out, budget, engine, watch)
     written = result.write(outcome, arguments.out)
     print(result.comparison(outcome), *written, sep="\n")
-    print(result.how_to_judge(outcome, written, arguments.out))
+    if result.is_better(outcome):
+        print(result.how_to_judge(outcome, written, arguments.out))
     return 0

@@ -94,14 +94,22 @@ def summary(candidate: Candidate) -> str:
 
 def comparison(result: SearchResult) -> str:
     """The start and the candidates on the final seeds, a line each."""
-    best = result.candidates[0]
+    taken = result.candidates[0] if is_better(result) else result.start
     lines = [
-        f"  {row.name:32} {summary(row)}{'  <- taken' if row is best else ''}"
+        f"  {row.name:32} {summary(row)}{'  <- taken' if row is taken else ''}"
         for row in (result.start, *result.candidates)
     ]
-    if best.score <= result.start.score:
-        lines.append("none is better than the start: search on, or change the space")
+    if taken is result.start:
+        lines.append(
+            "none is better than the start: search on, or change the space; what is written is "
+            f"{result.candidates[0].name}, to look at"
+        )
     return "\n".join(lines)
+
+
+def is_better(result: SearchResult) -> bool:
+    """Whether the search has found something better than what it started from."""
+    return result.candidates[0].score > result.start.score
 
 
 def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str:
