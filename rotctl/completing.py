@@ -2,9 +2,13 @@
 
 Reads what is needed and no more, as somebody waits: names of files, and for keys the files that the
 choices so far are composed of. Where nothing is known the shell completes files.
+
+Shells put a word into the line as it is, and a folder of configs may be a stranger's: a word with
+anything in it that a shell would act on is left out.
 """
 
 import argparse
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -14,6 +18,7 @@ from rotctl.errors import RotctlError
 Commands = Mapping[str, argparse.ArgumentParser]
 EXPERIMENT = "+experiment"
 CLIP = "behaviour.reference.clip"
+_HARMLESS = re.compile(r"[\w.+@/~,-][\w.+=@/~,-]*", re.ASCII)  # to bash, zsh and fish, unquoted
 
 
 def candidates(words: list[str], commands: Commands) -> list[str]:
@@ -32,7 +37,7 @@ def candidates(words: list[str], commands: Commands) -> list[str]:
         return []
     if not name and begun.startswith("-"):
         found = ["--help", "--version", "--config-dir"]
-    return sorted({word for word in found if word.startswith(begun)})
+    return sorted({w for w in found if w.startswith(begun) and _HARMLESS.fullmatch(w)})
 
 
 def _in_command(

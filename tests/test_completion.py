@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import yaml
 
 from rotctl.cli import main
 from rotctl.listing import choices, named_files
@@ -73,6 +74,35 @@ def test_a_file_of_ones_own_is_among_them_and_a_wrong_one_spoils_nothing(
     (tmp_path / "conf" / "behaviour" / "mine.yaml").write_text("a: [")
     assert words("rotctl run behaviour=mine behaviour.", capsys) == []
     assert words("rotctl run behaviour=mi", capsys) == ["behaviour=mine"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("x$(touch pwned)", "x`id`", "x;id", "x&id", "x|id", "x>y", "x y", "x\nid", "x\\id"),
+        *("x*", "x[a]", "x{a,b}", "x!id", "x#", "x'", 'x"', "xé"),
+    ],
+)
+def test_a_name_or_key_that_a_shell_would_act_on_is_left_out(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "conf" / "behaviour"
+    folder.mkdir(parents=True)
+    (tmp_path / "conf" / "rotctl.yaml").touch()
+    (folder / f"{name}.yaml").write_text("defaults: [stand, _self_]\n")
+    (folder / "x1.yaml").write_text(
+        yaml.safe_dump({"defaults": ["stand", "_self_"], "x_more": 1, name: 1, "x2": {name: 1}})
+    )
+    assert words("rotctl run behaviour=x", capsys) == ["behaviour=x1"]
+    assert words("rotctl new behaviour mine --from x", capsys) == ["x1"]
+    key = "rotctl run behaviour=x1 behaviour.x"
+    assert words(key, capsys) == ["behaviour.x2.", "behaviour.x_more="]
+    assert words(f"{key}2.", capsys) == []
+
+
+def test_a_key_is_no_path_of_a_command_to_zsh(capsys, tmp_path, monkeypatch):
+    """Which looks up what follows a `=` that a word begins with."""
+    monkeypatch.setattr("rotctl.completing._keys", lambda *of: ["=ls=", "seed="])
+    assert words("rotctl run ", capsys) == ["seed="]
 
 
 SAID = {
