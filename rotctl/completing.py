@@ -8,8 +8,10 @@ anything in it that a shell would act on is left out.
 """
 
 import argparse
+import os
 import re
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 from rotctl import choosing, listing, plain
@@ -17,6 +19,7 @@ from rotctl.errors import RotctlError
 
 Commands = Mapping[str, argparse.ArgumentParser]
 EXPERIMENT = "+experiment"
+CONFIG_DIR = "--config-dir"
 CLIP = "behaviour.reference.clip"
 _HARMLESS = re.compile(r"[\w.+@/~,-][\w.+=@/~,-]*", re.ASCII)  # to bash, zsh and fish, unquoted
 
@@ -29,15 +32,33 @@ def candidates(words: list[str], commands: Commands) -> list[str]:
             begun, or empty.
         commands: by name.
     """
-    *before, begun = words or [""]
+    *given, begun = words or [""]
+    if given[-1:] == [CONFIG_DIR]:
+        return []
+    folder, before = _own(given)
     name = next((word for word in before if word in commands), "")
     try:
-        found = _in_command(name, commands[name], before, begun) if name else [*commands]
-    except RotctlError:  # of a file; whoever runs the line is told
+        with listing.own(folder):
+            found = _in_command(name, commands[name], before, begun) if name else [*commands]
+    except RotctlError:  # of a file or a folder; whoever runs the line is told
         return []
     if not name and begun.startswith("-"):
-        found = ["--help", "--version", "--config-dir"]
+        found = ["--help", "--version", CONFIG_DIR]
     return sorted({w for w in found if w.startswith(begun) and _HARMLESS.fullmatch(w)})
+
+
+def _own(given: list[str]) -> tuple[Path | None, list[str]]:
+    """The folder of configs that a line names, and its words without it."""
+    folder, others = None, []
+    words = iter(given)
+    for word in words:
+        option, equals, value = word.partition("=")
+        if option == CONFIG_DIR:
+            # Of a word of its own the shell makes a path before rotctl sees it.
+            folder = Path(value if equals else os.path.expanduser(next(words)))
+        else:
+            others.append(word)
+    return folder, others
 
 
 def _in_command(

@@ -28,7 +28,10 @@ def words(line, capsys):
         ("rotctl --ver", ["--version"]),
         ("rotctl run --filmstrip --fo", ["--force"]),
         ("rotctl run behaviour=forward_roll", [f"behaviour={name}" for name in ROLLS]),
-        ("rotctl --config-dir conf run start=re", ["start=rest"]),
+        ("rotctl run start=re", ["start=rest"]),
+        ("rotctl --config-dir nowhere run start=re", []),
+        ("rotctl --config-dir ", []),  # a folder: the shell's own business
+        ("rotctl run --config-dir s", []),
         ("rotctl run con", ["controller.", "controller="]),
         ("rotctl run controller.po", ["controller.pose."]),
         ("rotctl show controller.pose.w", ["controller.pose.weight="]),
@@ -74,6 +77,28 @@ def test_a_file_of_ones_own_is_among_them_and_a_wrong_one_spoils_nothing(
     (tmp_path / "conf" / "behaviour" / "mine.yaml").write_text("a: [")
     assert words("rotctl run behaviour=mine behaviour.", capsys) == []
     assert words("rotctl run behaviour=mi", capsys) == ["behaviour=mine"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "rotctl --config-dir run run {}",  # a folder that is called as a command is
+        "rotctl --config-dir=run run {}",
+        "rotctl run --config-dir run {}",
+        "rotctl run --config-dir nowhere --config-dir=run {}",  # the last one counts
+        "rotctl --config-dir ~/run run {}",
+    ],
+)
+def test_a_folder_that_the_line_names_is_asked(line, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    file = tmp_path / "run" / "behaviour" / "mine.yaml"
+    file.parent.mkdir(parents=True)
+    file.write_text("defaults: [stand, _self_]\nonly_here: 1\n")
+    assert words(line.format("behaviour=mi"), capsys) == ["behaviour=mine"]
+    line = line.format("behaviour=mine behaviour.only")
+    assert words(line, capsys) == ["behaviour.only_here="]
+    assert words("rotctl run behaviour=mi", capsys) == []
 
 
 @pytest.mark.parametrize(
