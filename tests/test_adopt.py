@@ -198,6 +198,26 @@ def test_what_is_no_humanoid(tmp_path, changes, complaint):
     assert complaint in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("more", "complaint"),
+    [
+        ("<body><geom size='1'/></body>" * 300, "has 313 <body>; at most 300 can be used"),
+        ("<body>" + "<joint/>" * 200 + "</body>", "has 216 <joint>; at most 200 can be used"),
+        ("<geom size='1'/>" * 2000, "has 2013 <geom>; at most 2000 can be used"),
+    ],
+    ids=["bodies", "hinges", "shapes"],
+)
+def test_what_would_take_minutes_and_gigabytes_is_refused_unbuilt(
+    tmp_path, monkeypatch, more, complaint
+):
+    path = tmp_path / "robot.xml"
+    path.write_text(text(**{'<body name="head"': f'{more}<body name="head"'}))
+    monkeypatch.setattr("rotctl.adopting.solid.compiled", None)
+    with pytest.raises(InputError) as error:
+        adopt(path, "a")
+    assert str(error.value) == f"{path}: {complaint}"
+
+
 def test_poses_may_name_what_it_has_not(robot):
     made = build(load_with(adopt(robot, "mine").character))
     assert made.model.motors("chest_y", "a pose") == []

@@ -241,6 +241,21 @@ def test_unknown_names(world, changes, message):
     assert str(error.value) == message
 
 
+def test_more_than_can_be_simulated_is_refused(world):
+    character = world.config.character
+    foot = next(body for body in character.bodies if body.name == "foot")
+    many = tuple(replace(foot.geoms[0], name=f"g{i}") for i in range(200))
+    hinged = replace(foot, joints=foot.joints[:1] * 200)
+    for bodies, complaint in (
+        ((foot,) * 200, "has 400 bodies; at most 300"),
+        ((hinged,), "has 400 joints; at most 200"),
+        ((replace(foot, geoms=many * 12),), "has 4800 geoms; at most 4500"),
+        ((replace(foot, geoms=many),), "has 40000 pairs of geoms in self_collision; at most 20000"),
+    ):
+        with pytest.raises(ValueError, match=f"{complaint} can be simulated"):
+            replace(character, bodies=bodies)
+
+
 def test_wrong_height(world):
     soles, crown = standing_height(world)
     with pytest.raises(InputError) as error:

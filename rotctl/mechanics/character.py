@@ -22,6 +22,9 @@ from rotctl.settings import (
 )
 
 Colour = tuple[Fraction, Fraction, Fraction]
+# Of a whole character, both sides counted: what a model may have out of a file, where a plate is
+# two capsules. Control has room for 250 hinges.
+MOST = {"bodies": 300, "joints": 200, "geoms": 4500, "pairs of geoms in self_collision": 20_000}
 
 
 @validated(frozen=True, config=STRICT)
@@ -114,6 +117,24 @@ class Character:
     def __post_init__(self) -> None:
         if self.drawn and not 0.1 <= self.height / self.drawn.height <= 10.0:
             raise ValueError(f"height must be within a tenth and ten times {self.drawn.height:g} m")
+        for (what, most), count in zip(MOST.items(), _counts(self), strict=True):
+            if count > most:
+                raise ValueError(f"has {count} {what}; at most {most} can be simulated")
+
+
+def _counts(character: Character) -> tuple[int, int, int, int]:
+    """How many there will be of each of `MOST`."""
+    sides = [2 if body.mirror else 1 for body in character.bodies]
+    both = list(zip(sides, character.bodies, strict=True))
+    solid: dict[str, int] = {}
+    for n, body in both:
+        solid[body.name] = solid.get(body.name, 0) + n * sum(geom.mass > 0 for geom in body.geoms)
+    pairs = sum(  # of one body, left ones with right ones
+        solid.get(a, 0) * solid.get(b, 0) // (4 if a == b else 1)
+        for a, b in character.self_collision
+    )
+    joints, geoms = (sum(n * len(getattr(b, it)) for n, b in both) for it in ("joints", "geoms"))
+    return sum(sides), joints, geoms, pairs
 
 
 def add_character(spec: mujoco.MjSpec, character: Character) -> None:

@@ -17,6 +17,9 @@ from rotctl.quiet import quiet
 MAX_BYTES = 4_000_000
 MAX_ELEMENTS = 20_000
 MAX_DEPTH = 100
+# A humanoid with both hands of every finger has some 70 hinges, one with every joint of a body
+# model 153; of shapes the finest have a few hundred.
+MOST = {"body": 300, "joint": 200, "geom": 2000}
 _RUNS = ("include", "plugin", "extension", "replicate", "composite", "flexcomp", "attach", "frame")
 BONES = ("body", "joint", "freejoint", "geom", "default", "worldbody", "mujoco", "compiler")
 _FILES = ("mesh", "material", "hfield", "fitscale")  # of a geom, what needs more than this file
@@ -52,6 +55,10 @@ def read_mjcf(path: Path) -> ElementTree.Element:
                 f"{path}: has <{element.tag}>; save the model whole, with MjSpec.to_xml()"
             )
         waiting.extend((child, depth + 1) for child in element)
+    for tag, most in MOST.items():
+        count = sum(1 for part in root.iter("worldbody") for _ in part.iter(tag))
+        if count > most:
+            raise InputError(f"{path}: has {count} <{tag}>; at most {most} can be used")
     return root
 
 
