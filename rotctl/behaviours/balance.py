@@ -56,15 +56,16 @@ class Capture:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
         model, state = scene.model, scene.state
-        feet, corners, (mx, my) = self._support(scene)
+        bodies, corners, (mx, my) = self._support(scene)
         rate = support.pendulum_rate(model, state)
         x, y = support.capture_point(state, rate)
         reach = 1.0 + self.gain
         wish = (mx + reach * (x - mx), my + reach * (y - my))
         px, py = support.within(corners, (mx, my), wish, self.margin)
-        ex, ey = self.beyond(scene)
+        ex, ey = self._beyond(corners, (mx, my), (x, y))
         cx, cy, cz = state.momentum.com.tolist()
         task["acceleration"] = [rate * rate * (cx - px - ex), rate * rate * (cy - py - ey), 0.0]
+        feet = [support.middle(support.ends(model, state.data, (body,))) for body in bodies]
         aside = max((cx - fx) ** 2 + (cy - fy) ** 2 for fx, fy in feet)
         up = sqrt(max(self.height**2 - aside, 0.0))
         goal = model.ground.height(cx, cy) + up - self.sink
@@ -76,22 +77,25 @@ class Capture:
         """How far beyond the feet pressure is wanted [m]."""
         _, corners, middle = self._support(scene)
         rate = support.pendulum_rate(scene.model, scene.state)
-        x, y = support.capture_point(scene.state, rate)
+        return self._beyond(corners, middle, support.capture_point(scene.state, rate))
+
+    def _beyond(self, corners: list[Point], middle: Point, point: Point) -> tuple[float, float]:
+        """The same of a capture point."""
+        x, y = point
         ix, iy = support.within(corners, middle, (x, y), self.lunge_margin)
         ex, ey = self.lunge * (x - ix), self.lunge * (y - iy)
         far = sqrt(ex * ex + ey * ey)
         share = min(1.0, self.lunge_most / far) if far > 0.0 else 0.0
         return share * ex, share * ey
 
-    def _support(self, scene: Scene) -> tuple[list[Point], list[Point], Point]:
-        """Middles of the bodies, corners of the hull of those on the ground, and its middle."""
+    def _support(self, scene: Scene) -> tuple[list[int], list[Point], Point]:
+        """The bodies that do not swing, hull of those on the ground, and its middle."""
         model, state = scene.model, scene.state
         bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
         bodies = [body for body in bodies if body != scene.step.swing]
         stand = [body for body in bodies if not support.lifted(model, state, body)]
         ends = support.ends(model, state.data, stand or bodies)
-        middles = [support.middle(support.ends(model, state.data, (body,))) for body in bodies]
-        return middles, support.hull(ends), support.middle(ends)
+        return bodies, support.hull(ends), support.middle(ends)
 
 
 @validated(frozen=True, config=STRICT)

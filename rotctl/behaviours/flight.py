@@ -11,9 +11,9 @@ of shape from here to the landing pose makes by itself. Shapes lie on one line: 
 fully tucked, 0 in the landing pose and -1 stretched.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import atan2, copysign, pi, radians, sqrt, tau
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import mujoco
 import numpy as np
@@ -33,6 +33,7 @@ from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
+REMAINING = 1.0 - INSTANTS
 HALVINGS = 14  # of the amounts that are possible: 0.0001
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
 TUCK = "tuck"  # the shape that every flight has
@@ -95,8 +96,7 @@ class FlightSettings:
         return self.tuck if shape == TUCK else self.shapes.get(shape)
 
 
-@dataclass(frozen=True)
-class Aloft:
+class Aloft(NamedTuple):
     """What flight remembers from one control step to the next.
 
     Attributes:
@@ -280,9 +280,15 @@ class Flight:
             amount: that it goes to, until it opens; now: the present one.
             time: left [s].
         """
+        return self._mean_slowness(amount, now, *self._plan(time))
+
+    def _plan(self, time: float) -> tuple[Array, Array]:
+        """What is held of an amount at `INSTANTS` of the time left [s], and gone of its change."""
         settings = self._settings
-        held = _smooth(np.minimum((1.0 - INSTANTS) * (time / settings.opening), 1.0))
-        gone = _smooth(np.minimum(INSTANTS * (time / settings.change), 1.0))
+        held = _smooth(np.minimum(REMAINING * (time / settings.opening), 1.0))
+        return held, _smooth(np.minimum(INSTANTS * (time / settings.change), 1.0))
+
+    def _mean_slowness(self, amount: float, now: float, held: Array, gone: Array) -> float:
         amounts = now + (amount * held - now) * gone
         return float(np.interp(amounts, AMOUNTS, self._slowness).sum()) / len(INSTANTS)
 
@@ -323,9 +329,10 @@ class Flight:
     def _amount(self, need: float, momentum: float, now: float, time: float) -> float:
         """Of tuck whose mean rate |H|/I over the time left makes the turn, by bisection."""
         low, high = -self._settings.longest, self._settings.tightest
+        held, gone = self._plan(time)
 
         def falls_short(amount: float) -> bool:
-            return momentum * self.mean_slowness(amount, now, time) * time < need
+            return momentum * self._mean_slowness(amount, now, held, gone) * time < need
 
         if falls_short(high):
             return high

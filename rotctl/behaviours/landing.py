@@ -10,8 +10,8 @@ second. Where it shall be gone after the time T, it asks for
 and the body is turned about left until the centre of mass is there, on flat feet.
 """
 
-from dataclasses import dataclass
 from math import atan2
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -47,8 +47,7 @@ class LandingSettings:
     most: Positive
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(NamedTuple):
     """The body as it meets the ground.
 
     Attributes:

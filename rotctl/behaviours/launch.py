@@ -8,7 +8,7 @@ there together, when the centre of mass has risen to where the legs end.
 
 from collections.abc import Mapping
 from math import copysign, sqrt
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from pydantic.dataclasses import dataclass as validated
 
@@ -59,12 +59,13 @@ class Lean:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
         (ahead, left, _), momentum = scene.axes, scene.state.momentum
+        base = standing(scene, self.bodies)
         if self.speed:
             more = self.eager * (self.speed - dot(momentum.com_velocity, ahead))
-            along = pushed(scene, self.bodies, ahead, more, self.margin)
+            along = pushed(scene, base, ahead, more, self.margin)
         else:
-            along = captured(scene, self.bodies, ahead, self.gain, self.margin, self.ahead)
-        across = captured(scene, self.bodies, left, self.gain, self.margin)
+            along = captured(scene, base, ahead, self.gain, self.margin, self.ahead)
+        across = captured(scene, base, left, self.gain, self.margin)
         task["acceleration"] = along * ahead + across * left
         above = float(momentum.com[2]) - scene.floor - self.height
         down = min(max(self.steady * above, -self.sink), self.sink)
@@ -104,7 +105,7 @@ class Launch:
         velocity = scene.state.momentum.com_velocity
         missing = self.forward * ahead - velocity
         missing[2] = self.up - float(velocity[2])
-        across = captured(scene, self.bodies, left, self.gain, self.margin)
+        across = captured(scene, standing(scene, self.bodies), left, self.gain, self.margin)
         wanted = missing / time
         task["acceleration"] = wanted + (across - dot(wanted, left)) * left
 
@@ -174,49 +175,62 @@ class Whirl:
         return launch, flight
 
 
-def feet(scene: Scene, bodies: tuple[str, ...]) -> tuple[list[support.Point], support.Point]:
-    """Corners and middle of the bodies that stand."""
-    standing = body_ids(scene.model.mj, bodies, "behaviour.stages.tasks.bodies")
-    ends = support.ends(scene.model, scene.state.data, standing)
-    return support.hull(ends), support.middle(ends)
+class Base(NamedTuple):
+    """What it stands on at one instant.
+
+    Attributes:
+        corners, middle: of the bodies that stand, seen from above [m].
+        rate: of the pendulum on them [1/s], see `pendulum_rate`.
+    """
+
+    corners: list[support.Point]
+    middle: support.Point
+    rate: float
+
+
+def standing(scene: Scene, bodies: tuple[str, ...]) -> Base:
+    """What it stands on, where these bodies do."""
+    ends = _ends(scene, bodies)
+    return Base(support.hull(ends), support.middle(ends), pendulum_rate(scene))
+
+
+def _ends(scene: Scene, bodies: tuple[str, ...]) -> list[support.Point]:
+    found = body_ids(scene.model.mj, bodies, "behaviour.stages.tasks.bodies")
+    return support.ends(scene.model, scene.state.data, found)
 
 
 def leaning(scene: Scene, bodies: tuple[str, ...]) -> tuple[float, float]:
     """How far the centre of mass is ahead of the middle of the feet, and over the ground [m]."""
-    _, (mx, my) = feet(scene, bodies)
+    mx, my = support.middle(_ends(scene, bodies))
     x, y, z = scene.state.momentum.com.tolist()
     fx, fy, _ = scene.axes[0].tolist()
     return fx * (x - mx) + fy * (y - my), z - scene.floor
 
 
 def captured(
-    scene: Scene, bodies: tuple[str, ...], way: Array, gain: float, margin: float, over: float = 0.0
+    scene: Scene, base: Base, way: Array, gain: float, margin: float, over: float = 0.0
 ) -> float:
     """Acceleration along a level way (3,) that keeps the capture point over the feet [m/s2].
 
     Args:
         over: so far along the way from the middle of the feet [m].
     """
-    _, (mx, my) = feet(scene, bodies)
+    (mx, my), rate = base.middle, base.rate
     com, velocity = scene.state.momentum.com, scene.state.momentum.com_velocity
     wx, wy, _ = way.tolist()
-    rate = pendulum_rate(scene)
     off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
     out = off + dot(velocity, way) / rate
     wanted = rate * rate * (off - (1.0 + gain) * out + gain * over)
-    return pushed(scene, bodies, way, wanted, margin)
+    return pushed(scene, base, way, wanted, margin)
 
 
-def pushed(
-    scene: Scene, bodies: tuple[str, ...], way: Array, wanted: float, margin: float
-) -> float:
+def pushed(scene: Scene, base: Base, way: Array, wanted: float, margin: float) -> float:
     """What of an acceleration along a level way (3,) the feet can give [m/s2].
 
     The ways are looked at one by one: pressure at the toes still balances from side to side.
     """
-    corners, (mx, my) = feet(scene, bodies)
+    corners, (mx, my), rate = base
     com, (wx, wy, _) = scene.state.momentum.com, way.tolist()
-    rate = pendulum_rate(scene)
     off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
     out = off - wanted / (rate * rate)
     px, py = support.within(corners, (mx, my), (mx + out * wx, my + out * wy), margin)

@@ -1,7 +1,7 @@
 """What aims and conditions of a stage look at."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from rotctl.mechanics.excursion import Excursion, ExcursionName
 from rotctl.mechanics.model import Model
@@ -9,8 +9,7 @@ from rotctl.mechanics.state import State
 from rotctl.rotations import Array
 
 
-@dataclass(frozen=True)
-class Begin:
+class Begin(NamedTuple):
     """How a stage began.
 
     Attributes:
@@ -27,8 +26,7 @@ class Begin:
     excursion: Excursion
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(NamedTuple):
     """A step with a foot, or none where both stand; see `rotctl.behaviours.stepping`.
 
     Attributes:
@@ -41,8 +39,7 @@ class Step:
     begin: float = 0.0
 
 
-@dataclass(frozen=True)
-class Scene:
+class Scene(NamedTuple):
     """One instant of a staged behaviour.
 
     Attributes:

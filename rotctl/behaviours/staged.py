@@ -6,8 +6,8 @@ forward, left and up; the phase is the excursion about left, [AlBorno2014], or a
 """
 
 import math
-from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from dataclasses import dataclass, field
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,8 +92,7 @@ class StagedSettings:
         return Staged(self, model, control, measured)
 
 
-@dataclass(frozen=True)
-class StagedMemory:
+class StagedMemory(NamedTuple):
     """What a staged behaviour remembers from one control step to the next.
 
     Attributes:
@@ -120,11 +119,12 @@ class StagedMemory:
 class _Part:
     """A stage, ready: its tasks, what fills them, and their places among the behaviour's.
 
-    An aim may take a task's weight for a step; `weight` (k, 3) is what they begin with.
+    An aim may take a task's weight for a step; `weight` (k, 3) is what they begin with. Each
+    filler has its task as a view of its row.
     """
 
     tasks: Tasks
-    fillers: list[tuple[int, str, Aim]]
+    fillers: list[tuple[Tasks, str, Aim]]
     slots: list[int]
     held_out: NDArray[np.bool_]
     behind: Array | None
@@ -174,7 +174,7 @@ class Staged:
     def _part(self, stage: Stage) -> _Part:
         model = self._model
         rows: list[Tasks] = []
-        fillers: list[tuple[int, str, Aim]] = []
+        filled: list[tuple[int, str, Aim]] = []
         slots: list[int] = []
         every = self._settings.tasks | stage.tasks
         named = {name: wanted.gains or name for name, wanted in every.items()}
@@ -185,13 +185,14 @@ class Staged:
             for body, slot in zip(bodies, _names(model, name, wanted), strict=True):
                 if wanted.aim:
                     wanted.aim.check(model)
-                    fillers.append((len(rows), wanted.kind, wanted.aim))
+                    filled.append((len(rows), wanted.kind, wanted.aim))
                 number = kind(wanted.kind).number
                 rows.append(task(number, gains[named[name]], self.axes, body, wanted.point))
                 slots.append(self.tasks.index(slot))
         held_out = model.excluded.copy()
         held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
         tasks = np.concatenate([np.zeros(0, TASK), *rows])
+        fillers = [(tasks[row], kind_name, aim) for row, kind_name, aim in filled]
         aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
         pose = pose_gains_of(self._control, stage.pose)
         contact = contact_gains_of(self._control, stage.contact)
@@ -249,32 +250,30 @@ class Staged:
         turned = self._frame.turned(state.trunk_axes)
         now = excursion.keep_phase(now, turned, self._period, measured.phase_time)
         slow = float(np.abs(state.velocity).max()) < SLOW
-        memory = replace(
-            before,
-            excursion=now,
-            airborne=0.0 if state.contacts.count else before.airborne + self._period,
-            still=before.still + self._period if slow else 0.0,
-        )
+        airborne = 0.0 if state.contacts.count else before.airborne + self._period
+        still = before.still + self._period if slow else 0.0
+        memory = before._replace(excursion=now, airborne=airborne, still=still)
         stepping = self._parts[memory.stage].stepping
-        step = stepping.next(self._scene(memory, state)) if stepping else Step()
-        memory = replace(memory, step=step)
+        scene = self._scene(memory, state)
+        memory = memory._replace(step=stepping.next(scene) if stepping else Step())
+        scene = scene._replace(step=memory.step)
         until = self._stages[memory.stage].until
         last = memory.stage + 1 == len(self._parts)
-        if not last and until is not None and until.met(self._scene(memory, state)):
-            memory = replace(memory, stage=memory.stage + 1, begin=_begin(state, now), aloft=None)
+        if not last and until is not None and until.met(scene):
+            memory = memory._replace(stage=memory.stage + 1, begin=_begin(state, now), aloft=None)
+            scene = self._scene(memory, state)
         law = self._poses[memory.stage]
-        aloft = law.advance(memory.aloft, self._scene(memory, state), self._period)
-        return replace(memory, aloft=aloft)
+        return memory._replace(aloft=law.advance(memory.aloft, scene, self._period))
 
     def command(self, memory: StagedMemory, state: State) -> Command:
         """What the present stage wants at this instant."""
         part, stage = self._parts[memory.stage], self._stages[memory.stage]
         scene = self._scene(memory, state)
         poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
-        scene = replace(scene, pose=poses[0], speed=speeds[0])
+        scene = scene._replace(pose=poses[0], speed=speeds[0])
         part.tasks["weight"] = part.weight
-        for i, kind_name, aim in part.fillers:
-            aim.fill(part.tasks[i], kind_name, scene)
+        for row, kind_name, aim in part.fillers:
+            aim.fill(row, kind_name, scene)
         held_out = part.held_out.copy()
         held_out[memory.step.swing] = True  # where none swings, the world's
         pose_a, pose_b = poses + _lag(part.pose) * speeds

@@ -9,6 +9,7 @@ swing foot and goes to where that point will be when the foot is down; pressure 
 other foot meanwhile, from which the point runs away as e^(omega t).
 """
 
+from functools import lru_cache
 from math import atan2, cos, exp, pi, sin, sqrt
 from typing import Literal
 
@@ -156,8 +157,7 @@ class Stepping:
         return far
 
     def _feet(self, model: Model) -> tuple[int, int]:
-        left, right = self.bodies
-        return body_id(model.mj, left, KEY), body_id(model.mj, right, KEY)
+        return _ids(model.mj, self.bodies)
 
 
 @validated(frozen=True, config=STRICT)
@@ -175,6 +175,12 @@ class Heading:
         task["target"] = about_up(atan2(y, x))
         if scene.step.swing != int(task["body"]):
             task["weight"] = 0.0
+
+
+@lru_cache(maxsize=64)
+def _ids(mj: mujoco.MjModel, bodies: tuple[str, str]) -> tuple[int, int]:
+    left, right = bodies
+    return body_id(mj, left, KEY), body_id(mj, right, KEY)
 
 
 def arrival(way: float, speed: float, time: float) -> float:

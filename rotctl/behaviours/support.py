@@ -33,11 +33,11 @@ def ends(model: Model, data: mujoco.MjData, bodies: Iterable[int]) -> list[Point
     Raises:
         InputError: there are none.
     """
-    found = []
+    found, mj, places, frames = [], model.mj, data.geom_xpos, data.geom_xmat
     for body in bodies:
-        for geom, half, _ in _solid(model.mj, body):
-            x, y, _ = data.geom_xpos[geom].tolist()
-            across = data.geom_xmat[geom].tolist()
+        for geom, half, _ in _solid(mj, body):
+            x, y, _ = places[geom].tolist()
+            across = frames[geom].tolist()
             dx, dy = half * across[2], half * across[5]
             found += [(x + dx, y + dy), (x - dx, y - dy)]
     if not found:
@@ -66,7 +66,11 @@ def hull(points: list[Point]) -> list[Point]:
     def half(given: list[Point]) -> list[Point]:
         chain: list[Point] = []
         for p in given:
-            while len(chain) > 1 and _left_of(chain[-2], chain[-1], p) <= 0.0:
+            x, y = p
+            while len(chain) > 1:
+                (ax, ay), (bx, by) = chain[-2:]
+                if not (bx - ax) * (y - ay) - (by - ay) * (x - ax) <= 0.0:  # it turns left
+                    break
                 chain.pop()
             chain.append(p)
         return chain[:-1]
@@ -76,8 +80,8 @@ def hull(points: list[Point]) -> list[Point]:
 
 def middle(corners: list[Point]) -> Point:
     """Mean of the corners."""
-    n = len(corners)
-    return fsum(p[0] for p in corners) / n, fsum(p[1] for p in corners) / n
+    n, (xs, ys) = len(corners), zip(*corners, strict=True)
+    return fsum(xs) / n, fsum(ys) / n
 
 
 def within(corners: list[Point], centre: Point, wish: Point, margin: float) -> Point:
@@ -126,7 +130,3 @@ def capture_point(state: State, rate: float) -> Point:
     """Where the body would come to stand, seen from above [m]; `rate` is `pendulum_rate`."""
     c, v = state.momentum.com, state.momentum.com_velocity
     return float(c[0] + v[0] / rate), float(c[1] + v[1] / rate)
-
-
-def _left_of(a: Point, b: Point, p: Point) -> float:
-    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])

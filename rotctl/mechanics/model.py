@@ -8,6 +8,7 @@ is block diagonal in the two, so that control can work on full vectors and leave
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import mujoco
 import numpy as np
@@ -266,11 +267,16 @@ def body_ids(mj: mujoco.MjModel, names: Iterable[str], key: str) -> list[int]:
     Raises:
         InputError: there is none of a name; `key` says where it stands.
     """
+    return list(_body_ids(mj, tuple(names), key))
+
+
+@lru_cache(maxsize=64)  # behaviours ask at every control step
+def _body_ids(mj: mujoco.MjModel, names: tuple[str, ...], key: str) -> tuple[int, ...]:
     found: list[int] = []
     for name in names:
         both = [mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name + side) for side in SIDES]
         found += both if min(both) >= 1 else [body_id(mj, name, key)]
-    return found
+    return tuple(found)
 
 
 def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
