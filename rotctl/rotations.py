@@ -56,10 +56,7 @@ def rotation_to(start: Array, end: Array) -> Array:
 
 def dot(a: Array, b: Array) -> float:
     """Dot product of two short vectors, such as (3,), added from left to right."""
-    total = 0.0  # not sum(), which some versions of Python add with compensation
-    for x, y in zip(a.tolist(), b.tolist(), strict=True):
-        total += x * y
-    return total
+    return dotted(a.tolist(), b.tolist())
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -98,6 +95,14 @@ def advanced(quaternion: Numbers, rotation_vector: Numbers) -> tuple[float, floa
     w, x, y, z = _product(*_turn(*rotation_vector), *quaternion)
     length = sqrt(w * w + x * x + y * y + z * z)
     return w / length, x / length, y / length, z / length
+
+
+def dotted(a: Numbers, b: Numbers) -> float:
+    """`dot` of plain numbers."""
+    total = 0.0  # not sum(), which some versions of Python add with compensation
+    for x, y in zip(a, b, strict=True):
+        total += x * y
+    return total
 
 
 def crossed(a: Numbers, b: Numbers) -> Triple:

@@ -1,6 +1,7 @@
 """How a stage chooses the pose that is tracked: over phase, rise or turn, or as flight needs."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import copysign, radians
 from typing import Protocol
 
@@ -98,14 +99,20 @@ class Rise:
         z, first = float(scene.state.momentum.com[2]), float(scene.begin.com[2])
         way = scene.floor + self.height - first
         way = copysign(max(abs(way), 1e-3), way)
-        begin, finish = self.parts.T
-        gone = ((z - first) / way - begin) / (finish - begin)
+        begin, span, fastest, change = self._ways
+        gone = ((z - first) / way - begin) / span
         share = np.minimum(np.maximum(gone, 0.0), 1.0)
-        speed = np.where(gone == share, 1.0 / (finish - begin), 0.0)
+        speed = np.where(gone == share, fastest, 0.0)
         speed *= max(float(scene.state.momentum.com_velocity[2]) / way, 0.0)
-        change = self.end - self.start
         pose, speed = self.start + share * change, speed * change
         return np.array((pose, pose)), np.array((speed, speed))
+
+    @cached_property
+    def _ways(self) -> tuple[Array, Array, Array, Array]:
+        """Of each joint: where it begins, over which part, its share's speed, and its change."""
+        begin, finish = self.parts.T
+        span = finish - begin
+        return begin, span, 1.0 / span, self.end - self.start
 
 
 @validated(frozen=True, config=STRICT)

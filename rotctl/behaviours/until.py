@@ -83,7 +83,7 @@ class Touches:
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         wanted = body_ids(scene.model.mj, self.bodies, "behaviour.stages.until.bodies")
-        return bool(np.isin(scene.state.contacts.body, wanted).any())
+        return any(body in wanted for body in scene.state.contacts.body.tolist())
 
 
 @validated(frozen=True, config=STRICT)

@@ -8,7 +8,7 @@ is block diagonal in the two, so that control can work on full vectors and leave
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import mujoco
 import numpy as np
@@ -75,8 +75,14 @@ class Model:
 
     def hinges(self, body: int) -> tuple[int, int]:
         """First motor of a body's own joints, and how many it has; none of the root."""
-        first, count = int(self.mj.body_dofadr[body]), int(self.mj.body_dofnum[body])
-        return (first - self.joints.start, count) if body > ROOT_BODY else (0, 0)
+        return self._hinges[body]
+
+    @cached_property
+    def _hinges(self) -> list[tuple[int, int]]:
+        """Of all bodies."""
+        firsts = (self.mj.body_dofadr - self.joints.start).tolist()
+        found = list(zip(firsts, self.mj.body_dofnum.tolist(), strict=True))
+        return [(0, 0)] * (ROOT_BODY + 1) + found[ROOT_BODY + 1 :]
 
     def motors(self, joint: str, key: str) -> list[int]:
         """Motors of a joint's name; one without a side stands for both.
