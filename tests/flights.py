@@ -122,7 +122,7 @@ def spawn(model, data, pose, pitch, height, up, angular):
     mujoco.mj_forward(model.mj, data)
     offset = data.subtree_com[1] - data.xpos[1]
     turn = data.xmat[1].reshape(3, 3)
-    inertia = turn @ Shapes(model).momentum(pose).inertia @ turn.T
+    inertia = turn @ np.array(Shapes(model).spin(pose).inertia) @ turn.T
     spin = np.linalg.solve(inertia, angular)
     data.qpos[2] += height - data.subtree_com[1, 2]
     data.qvel[:3] = np.array([0.0, 0.0, up]) - np.cross(spin, offset)

@@ -34,17 +34,6 @@ class Momentum(NamedTuple):
     root_offset: Array
 
 
-class Spin(NamedTuple):
-    """What of a momentum is about turning.
-
-    Attributes:
-        angular, inertia: as in `Momentum`.
-    """
-
-    angular: Array
-    inertia: Array
-
-
 def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
     """Momentum of the current position and velocity; call after `mj_step1` or `mj_forward`.
 
@@ -56,8 +45,11 @@ def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
     mujoco.mj_mulM(mj, data, generalised, data.qvel)
     rotation = data.xmat[ROOT_BODY].reshape(3, 3).copy()
     com = data.subtree_com[ROOT_BODY].copy()
-    offset, linear = com - data.qpos[:3], generalised[:3]
-    angular, inertia = _spin(data, generalised, rotation, offset)
+    offset = com - data.qpos[:3]
+    linear = generalised[:3]
+    angular = product(rotation, generalised[3:6]) - cross(offset, linear)
+    xx, yy, zz, xy, xz, yz = data.crb[ROOT_BODY, :6]
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return Momentum(
         com=com,
         com_velocity=linear / mj.body_subtreemass[ROOT_BODY],
@@ -68,20 +60,6 @@ def read_momentum(mj: mujoco.MjModel, data: mujoco.MjData) -> Momentum:
         root_rotation=rotation,
         root_offset=offset,
     )
-
-
-def read_spin(mj: mujoco.MjModel, data: mujoco.MjData) -> Spin:
-    """Part of `read_momentum`, in half the time."""
-    generalised = np.empty(mj.nv)
-    mujoco.mj_mulM(mj, data, generalised, data.qvel)
-    offset = data.subtree_com[ROOT_BODY] - data.qpos[:3]
-    return _spin(data, generalised, data.xmat[ROOT_BODY].reshape(3, 3), offset)
-
-
-def _spin(data: mujoco.MjData, generalised: Array, rotation: Array, offset: Array) -> Spin:
-    angular = product(rotation, generalised[3:6]) - cross(offset, generalised[:3])
-    xx, yy, zz, xy, xz, yz = data.crb[ROOT_BODY, :6].tolist()
-    return Spin(angular, np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]))
 
 
 def contact_momentum_maps(momentum: Momentum, jacobian: Array) -> Array:
