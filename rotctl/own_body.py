@@ -59,7 +59,7 @@ def named(overrides: list[str]) -> Named | None:
     Raises:
         InputError: an override cannot be read.
     """
-    about = [o for o in overrides if o.lstrip("+~").startswith(GROUP)]
+    about = [o for o in overrides if _key(o) == GROUP or _key(o).startswith(f"{GROUP}.")]
     chosen = [o for o in about if o.startswith(f"{GROUP}=")]
     found = _data(chosen[-1].partition("=")[2]) if chosen else None
     if found is None:
@@ -73,6 +73,10 @@ def named(overrides: list[str]) -> Named | None:
             raise InputError(f"~{one.key_or_group}: a model's keys are given, not removed")
         changes.append((str(one.key_or_group).removeprefix(f"{GROUP}."), one.value()))
     return Named(*found, changes, [o for o in overrides if o not in about])
+
+
+def _key(override: str) -> str:
+    return override.lstrip("+~").partition("=")[0]
 
 
 def converted(model: Named) -> dict[str, Any]:

@@ -111,6 +111,13 @@ def test_an_unknown_key_is_told():
     )
 
 
+def test_a_key_that_only_begins_so_is_none_of_the_models():
+    for key in ("character_x", "characters.mass"):
+        said = complaint(INLINE, f"{key}=1")
+        assert said.startswith(f"unknown key {key!r}; ")
+        assert "valid keys: behaviour, character, " in said
+
+
 def test_a_body_without_a_neck_rolls_over_its_head(here):
     """As a model from elsewhere: our adult's text, less the joints of its neck."""
     root = ElementTree.fromstring(adult().mjcf)
