@@ -95,6 +95,8 @@ def converted(model: Named) -> dict[str, Any]:
             ours = plain.put(ours, parts, value)
         else:
             over.append((parts, value))
+    if "kind" not in ours:
+        raise InputError(f"{GROUP}: a file goes with its kind; write kind: mjcf")
     try:
         body = checked(OwnBody, ours)
     except InputError as error:
@@ -138,10 +140,15 @@ def _data(text: str) -> tuple[dict[str, Any], Path] | None:
         from rotctl.overrides import single
 
         value = single(f"{GROUP}={text}").value()
-        return (value, Path()) if isinstance(value, dict) and "kind" in value else None
+        return (value, Path()) if isinstance(value, dict) and _is_meant(value) else None
     one = simple(f"{GROUP}={text}")
     if one is None or one.value not in choices(GROUP):
         return None
     path = named_file(GROUP, str(one.value))
     data = content(path) if is_own(path) else {}
-    return (data, path.parent) if "kind" in data else None
+    return (data, path.parent) if _is_meant(data) else None
+
+
+def _is_meant(data: dict[str, Any]) -> bool:
+    """Whether a model is: who gives a file and no kind is to be told of the kind."""
+    return "kind" in data or "file" in data

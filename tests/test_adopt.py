@@ -177,7 +177,7 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     assert main(["run", "character=mine", "duration=0.3", "--quiet"]) == 0
     assert main(["inspect-model", str(robot), "--out", "a.xml"]) == 2
     assert main(["inspect-model", str(robot), "--map", "left_hip=no"]) == 2
-    assert "--map left_hip=no: no such joint" in capsys.readouterr().err
+    assert "--map left_hip=no: no such body; its bodies: " in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -187,7 +187,7 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
          "joint 'nod' is a ball joint; only hinges can be used"),
         ({"<freejoint/>": ""}, "its first joint must be the root's freejoint"),
         ({"left_thigh": "a", "right_thigh": "b", "left_shin": "c", "left_foot": "d"},
-         "no joint for the left hip"),
+         "no body for the left hip"),
     ],
 )  # fmt: skip
 def test_what_is_no_humanoid(tmp_path, changes, complaint):

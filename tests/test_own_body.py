@@ -11,6 +11,7 @@ from rotctl import listing
 from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.listing import own
 from rotctl.run import make, run
 from rotctl.scenario import build
 from rotctl.written import to_dict
@@ -82,13 +83,34 @@ def test_roles_can_be_told(here):
     nameless = text(left_thigh="a", left_shin="b", left_foot="c")
     (here / "robot.xml").write_text(nameless)
     assert complaint(INLINE).startswith(
-        "robot.xml: no joint for the left hip, such as leftupleg; "
-        "name it with +character.roles.left_hip=NAME; its joints: torso, "
+        "robot.xml: no body for the left hip, such as leftupleg; "
+        "name it with +character.roles.left_hip=NAME; its bodies: torso, "
     )
     assert build(load([INLINE, "+character.roles.left_hip=a"])).model.mass > 40
     assert complaint(INLINE, "+character.roles.left_hip=z").startswith(
-        "robot.xml: +character.roles.left_hip=z: no such joint; its joints: torso, "
+        "robot.xml: +character.roles.left_hip=z: no such body; its bodies: torso, "
     )
+
+
+@pytest.mark.parametrize(
+    ("roles", "said"),
+    [
+        ("{nose: x}", "+character.roles.nose=x: no such role; valid: hips, chest, neck, head, "),
+        ("{left_hips: torso}", "left_hips=torso: no such role; did you mean left_hip? valid: hips"),
+        ("{right_knee: x}", "+character.roles.right_knee=x: no such body; its bodies: torso, "),
+    ],
+)
+def test_a_role_that_there_is_not_is_told(roles, said):
+    assert said in complaint(f"{INLINE[:-1]}, roles: {roles}}}")
+
+
+def test_a_file_without_its_kind_is_told_of_it(here):
+    said = "character: a file goes with its kind; write kind: mjcf"
+    assert complaint("character={file: robot.xml}") == said
+    (here / "conf/character/mine.yaml").write_text("{file: robot.xml}")
+    with own(None):
+        assert complaint("character=mine") == said
+    assert load(["character={file: robot.xml}", "+character.kind=mjcf"]).character.name == "robot"
 
 
 @pytest.mark.parametrize(

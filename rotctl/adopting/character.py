@@ -75,7 +75,7 @@ def adopt(
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
     parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
                for b in range(1, mj.nbody)}  # fmt: skip
-    roles = find_roles(path, _with_ends(parents), given)
+    roles = find_roles(path, _with_ends(parents), given, "body")
     if "hips" not in (given or {}):  # that of the legs alone: a tree may hang on the chest
         roles["hips"] = _common(parents, roles["left_hip"], roles["right_hip"])
     if roles["hips"] == roles["chest"]:

@@ -7,8 +7,10 @@ hip come a knee, an ankle and the ball of the foot, below a shoulder an elbow an
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Literal
 
 from rotctl.errors import InputError
+from rotctl.meant import instead
 
 SIDES = {"l": "left", "r": "right"}
 LEG, ARM = ("hip", "knee", "ankle"), ("shoulder", "elbow", "wrist")
@@ -38,7 +40,10 @@ ROLES = (
 
 
 def find_roles(
-    path: Path, parents: Mapping[str, str], given: Mapping[str, str] | None = None
+    path: Path,
+    parents: Mapping[str, str],
+    given: Mapping[str, str] | None = None,
+    thing: Literal["joint", "body"] = "joint",
 ) -> dict[str, str]:
     """Which joint is which: role, such as `left_hip`, to joint.
 
@@ -46,17 +51,20 @@ def find_roles(
         path: of the capture, for messages.
         parents: joint to parent, parents first.
         given: roles that the user has named.
+        thing: what the file calls those that are named.
 
     Raises:
-        InputError: a joint that is needed is not found, or is given and not there.
+        InputError: a joint that is needed is not found, or is given and not there, or there is no
+            such role.
     """
-    tree = _Tree(parents)
+    tree = _Tree(parents, thing)
     roles = dict(given or {})
     for role, joint in roles.items():
+        said = f"{path}: --map {role:.60}={joint:.60}: no such"
+        if role not in ROLES:
+            raise InputError(f"{said} role; {instead(role, ROLES)}")
         if joint not in parents:
-            raise InputError(
-                f"{path}: --map {role}={joint:.60}: no such joint; its joints: {tree.shown}"
-            )
+            raise InputError(f"{said} {thing}; {tree.shown}")
     for side, word in SIDES.items():
         for limb in (LEG, ARM):
             _find_limb(path, tree, roles, side, word, limb)
@@ -105,17 +113,19 @@ def _find_limb(
 def _missing(path: Path, role: str, what: str, tree: "_Tree", example: str = "") -> InputError:
     example = f", such as {example}" if example else ""
     return InputError(
-        f"{path}: no joint for the {what}{example}; name it with --map {role}=NAME; "
-        f"its joints: {tree.shown}"
+        f"{path}: no {tree.thing} for the {what}{example}; name it with --map {role}=NAME; "
+        f"{tree.shown}"
     )
 
 
 class _Tree:
     """The joints, their spellings and who hangs on whom."""
 
-    def __init__(self, parents: Mapping[str, str]) -> None:
+    def __init__(self, parents: Mapping[str, str], thing: Literal["joint", "body"]) -> None:
         self.parents = parents
-        self.shown = f"{', '.join(parents):.300}"
+        self.thing = thing
+        things = {"joint": "joints", "body": "bodies"}[thing]
+        self.shown = f"its {things}: {', '.join(parents):.300}"
         self.children: dict[str, list[str]] = {joint: [] for joint in parents}
         spelled: dict[str, tuple[int, str]] = {}
         for joint, parent in parents.items():
