@@ -79,6 +79,7 @@ def test_the_command_leaves_logs_and_rows_as_they_are(made, capsys, monkeypatch)
         (["--metric", "top=max(kom)"], "metric top: no array 'kom' in a log; did you mean com? "),
         (["--metric", "top=com[:, 9]"], "metric top: index 9 is out of bounds for axis 1"),
         (["--metric", "top=com"], "metric top: gives 120 x 3 values; make one of them"),
+        (["--metric", "a=1", "--metric", "a =2"], "--metric a: given twice, 1 and 2; rename one"),
         (["--metrics", "no.yaml"], "no.yaml: no such file"),
         (["criteria=none"], 'criteria="none": no such choice; valid: '),
         (["criteria.no=1"], "no run can be judged: unknown key 'criteria.no'; valid keys under"),
@@ -164,6 +165,15 @@ def test_metrics_of_ones_own_are_columns(made, tmp_path, capsys, monkeypatch):
         assert float(row["in_air"]) == pytest.approx(float(row["airborne"]))
         assert row["late"] == ""
     assert len(rows) == 2
+
+
+def test_the_command_line_goes_before_a_file_of_metrics(made, tmp_path, monkeypatch):
+    without_processes(monkeypatch)
+    (tmp_path / "mine.yaml").write_text("a: '1'\nb: '2'\n")
+    given = ["--metric", "a=3", "--metrics", str(tmp_path / "mine.yaml")]
+    assert main(["judge", str(made), *given]) == 0
+    rows = csv.DictReader(io.StringIO((made / "judged.csv").read_text()))
+    assert {(float(row["a"]), float(row["b"])) for row in rows} == {(3.0, 2.0)}
 
 
 def test_a_metric_that_some_runs_lack_is_told(tmp_path, capsys, monkeypatch):

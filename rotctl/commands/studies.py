@@ -115,7 +115,8 @@ def add_judge(commands: Commands) -> None:
         action="append",
         default=[],
         metavar="NAME=EXPRESSION",
-        help="a further column, of the log's arrays (docs/metrics.md)",
+        help="a further column, of the log's arrays (docs/metrics.md); goes before one of the "
+        "same name in FILE.yaml",
     )
     command.add_argument(
         "--metrics", type=Path, metavar="FILE.yaml", help="NAME: EXPRESSION, one a line"
@@ -135,7 +136,12 @@ def judge(arguments: argparse.Namespace) -> int:
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine
 
-    texts = dict(arguments.metric)
+    texts: dict[str, str] = {}
+    for name, text in arguments.metric:
+        if name in texts:
+            both = f"{texts[name]:.60} and {text:.60}"
+            raise InputError(f"--metric {name:.60}: given twice, {both}; rename one")
+        texts[name] = text
     if arguments.metrics is not None:
         texts = file_of_metrics(arguments.metrics) | texts
     metrics = read_all(texts)
