@@ -59,6 +59,10 @@ def _each(function: Callable[..., float], arguments: int) -> Callable[..., Any]:
     return lambda *arrays: np.asarray(elementwise(*arrays), dtype=float)
 
 
+def _log(x: float) -> float:
+    return math.log(x) if x else -math.inf
+
+
 _pow = _each(math.pow, 2)
 
 
@@ -89,9 +93,9 @@ FUNCTIONS: Mapping[str, Function] = {
     "abs": Function(np.abs, _ONE),
     "sqrt": Function(np.sqrt, _ONE),
     "exp": Function(_each(math.exp, 1), _ONE, cost=SLOW),
-    "log": Function(_each(math.log, 1), _ONE, cost=SLOW),
-    "sin": Function(np.sin, _ONE, cost=5),
-    "cos": Function(np.cos, _ONE, cost=5),
+    "log": Function(_each(_log, 1), _ONE, cost=SLOW),
+    "sin": Function(_each(math.sin, 1), _ONE, cost=SLOW),
+    "cos": Function(_each(math.cos, 1), _ONE, cost=SLOW),
     "atan2": Function(_each(math.atan2, 2), _TWO, cost=SLOW),
     "degrees": Function(np.degrees, _ONE),
     "radians": Function(np.radians, _ONE),
