@@ -189,3 +189,8 @@ def test_a_file_that_is_none_of_metrics(made, tmp_path, capsys, text):
     path.write_text(text)
     assert main(["judge", str(made), "--metrics", str(path)]) == 2
     assert "must be NAME: EXPRESSION, one a line" in capsys.readouterr().err
+
+
+def test_a_folder_that_is_not_there_is_told_first(tmp_path, capsys):
+    assert main(["judge", str(tmp_path / "none")]) == 2
+    assert capsys.readouterr().err == f"rotctl: {tmp_path / 'none'}: no such folder\n"

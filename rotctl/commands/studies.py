@@ -136,6 +136,8 @@ def judge(arguments: argparse.Namespace) -> int:
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine
 
+    if not arguments.folder.exists():  # before what is missing besides
+        raise InputError(f"{arguments.folder}: no such folder")
     texts: dict[str, str] = {}
     for name, text in arguments.metric:
         if name in texts:
