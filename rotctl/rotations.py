@@ -59,6 +59,11 @@ def dot(a: Array, b: Array) -> float:
     return dotted(a.tolist(), b.tolist())
 
 
+def length(a: Array) -> float:
+    """Of a short vector, such as (3,)."""
+    return sqrt(dot(a, a))
+
+
 def cross(a: Array, b: Array) -> Array:
     """Cross product of two vectors (3,)."""
     return np.array(crossed(a.tolist(), b.tolist()))

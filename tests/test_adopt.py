@@ -1,5 +1,6 @@
 """A foreign humanoid as a character: hung on its pelvis, straightened, with our names and signs."""
 
+from itertools import product
 from xml.etree import ElementTree
 
 import mujoco
@@ -10,6 +11,7 @@ from captures import adult
 from scipy.spatial.transform import Rotation
 
 from rotctl.adopting import adopt
+from rotctl.adopting.meshes import box
 from rotctl.checked import checked
 from rotctl.cli import main
 from rotctl.config import load
@@ -334,6 +336,30 @@ def test_capsules_stand_for_a_mesh(tmp_path, name):
     assert ends[..., 2] == pytest.approx(-0.03, abs=2e-3)
     without = adopt(path, "mine", meshes=False)
     assert "2 shapes that are meshes are left out" in without.notes
+
+
+def along_the_axes(corners):
+    return all(len(np.unique(places.round(9))) == 2 for places in corners.T)
+
+
+@pytest.mark.parametrize("vector", [(0.3, -0.4, 0.5), (1.0, 1.0, 1.0), (0.5, 1.1, 0.2)])
+def test_the_box_of_what_is_as_a_ball_is_along_the_axes(vector):
+    """It has no axes of its own but by rounding, here that of the numbers in an STL."""
+    octahedron = np.concatenate((np.eye(3), -np.eye(3)))
+    places = Rotation.from_rotvec(vector).apply(octahedron).astype(np.float32).astype(float)
+    found = box(places)
+    assert along_the_axes(found)
+    assert found.max(axis=0) == pytest.approx(places.max(axis=0))
+
+
+@pytest.mark.parametrize("sides", [(0.4, 0.1, 0.06), (0.4, 0.05, 0.05)])
+@pytest.mark.parametrize("scale", [1e-3, 1.0, 1e3])
+def test_a_box_is_as_its_points_lie_if_it_is_clearly_smaller_for_it(sides, scale):
+    brick = scale * np.array(list(product(*[(-0.5 * side, 0.5 * side) for side in sides])))
+    turn, slightly = (Rotation.from_rotvec(v) for v in ([0.3, -0.4, 0.5], [0.0, 0.0, 1e-3]))
+    found = turn.inv().apply(box(turn.apply(brick)))
+    assert np.ptp(found[:, 0]) == pytest.approx(0.4 * scale, rel=1e-6)
+    assert along_the_axes(box(slightly.apply(brick)) / scale)
 
 
 @pytest.mark.parametrize(

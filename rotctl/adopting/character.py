@@ -23,6 +23,7 @@ from rotctl.adopting.straight import face_forward, straighten
 from rotctl.adopting.tree import Segment, hung
 from rotctl.errors import InputError
 from rotctl.motion.naming import find_roles
+from rotctl.rotations import length
 
 _ADULT = {
     "waist": 200.0, "chest": 200.0, "spine": 200.0, "neck": 50.0, "hip": 250.0, "knee": 250.0,
@@ -121,7 +122,7 @@ def _hang_joints(segments: dict[int, Segment]) -> list[str]:
     found = []
     for segment in segments.values():
         for hinge in segment.hinges[1:]:
-            apart = float(np.linalg.norm(hinge.anchor - segment.origin))
+            apart = length(hinge.anchor - segment.origin)
             if apart > SAME_PLACE:
                 found.append(
                     f"{hinge.source} is moved {100 * apart:.0f} cm, to {segment.hinges[0].source}"

@@ -1,17 +1,19 @@
 """Meshes of a foreign model as boxes: what of them can touch, by their vertices alone.
 
 Only files below the model's own folder are read, and nothing but numbers out of them: MuJoCo never
-sees a stranger's mesh.
+sees a stranger's mesh. A box is part of a run's identity, so it is the same on every processor.
 """
 
 import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import mujoco
 import numpy as np
 
 from rotctl import files
 from rotctl.errors import InputError
+from rotctl.linear import product
 from rotctl.rotations import Array
 
 MAX_MESHES = 500
@@ -20,6 +22,7 @@ MAX_WHOLE = 100_000_000  # of all of them
 _HEADER, _FACET = 84, 50  # bytes of a binary STL, and of each of its triangles
 _NUMBER = rb"([-+]?[0-9.]{1,40}(?:[eE][-+]?[0-9]{1,3})?)"
 _VERTEX = re.compile(rb"^[ \t]*v(?:ertex)?[ \t]+" + b"[ \t]+".join([_NUMBER] * 3), re.MULTILINE)
+CLEARLY = 1.01  # [-] by which moments differ that have axes, and a box is smaller that is taken
 _KEPT = ("name", "class", "scale", "refpos", "refquat", "vertex")
 
 
@@ -84,20 +87,30 @@ def vertices(path: Path, content: bytes) -> Array:
 
 
 def box(places: Array) -> Array:
-    """The corners (8, 3) of the smaller of two boxes: along the axes, or as the points lie."""
+    """The corners (8, 3) of a box along the axes; as the points lie if that is clearly smaller."""
     places = np.unique(places, axis=0)  # of an STL, where many triangles meet in one
     centre = places.mean(axis=0)
-    own = np.linalg.eigh(np.cov((places - centre).T))[1]
     best, least = np.zeros((8, 3)), np.inf
-    for axes in (np.eye(3), own):
-        along = (places - centre) @ axes
+    for axes in (np.eye(3), *_own_axes(places - centre)):
+        along = product(places - centre, axes)
         low, high = along.min(axis=0), along.max(axis=0)
         thin = np.maximum(high - low, 1e-3 * max(float((high - low).max()), 1e-9))
-        if thin.prod() < least:
+        if CLEARLY * thin.prod() < least:
             least = float(thin.prod())
             signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
-            best = centre + (0.5 * (low + high) + signs * thin) @ axes.T
+            best = centre + product(0.5 * (low + high) + signs * thin, axes.T)
     return np.asarray(best)
+
+
+def _own_axes(arms: Array) -> list[Array]:
+    """The principal axes of points about their centre, as columns; none of what is as a ball is.
+
+    There any axes are as good, and rounding would choose.
+    """
+    spread = np.array([[(one * other).sum() for other in arms.T] for one in arms.T])
+    moments, axes = np.empty(3), np.empty(9)
+    mujoco.mju_eig3(moments, axes, np.empty(4), (spread / spread.trace()).ravel())
+    return [axes.reshape(3, 3)] if moments.max() > CLEARLY * moments.min() else []
 
 
 def _folder(path: Path, root: ElementTree.Element) -> Path:

@@ -6,7 +6,8 @@ import mujoco
 import numpy as np
 
 from rotctl.adopting.tree import Segment
-from rotctl.rotations import Array
+from rotctl.linear import product
+from rotctl.rotations import Array, length
 
 LEAST_SEEN = 0.003  # [m] radius, below which a shape is not even looked at
 _BOXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_MESH)
@@ -41,7 +42,7 @@ def _pieces(mj: mujoco.MjModel, data: mujoco.MjData, g: int) -> list[Piece]:
     if kind not in (*_BOXES, mujoco.mjtGeom.mjGEOM_ELLIPSOID):
         return []
     if kind == mujoco.mjtGeom.mjGEOM_MESH:  # of which there are the corners of a box
-        centre, size = centre + axes.T @ mj.geom_aabb[g, :3], mj.geom_aabb[g, 3:]
+        centre, size = centre + product(axes.T, mj.geom_aabb[g, :3]), mj.geom_aabb[g, 3:]
     thin, middle, long = np.argsort(size)
     radius = float(size[thin])
     half = (size[long] - radius) * axes[long]
@@ -72,7 +73,7 @@ def shapes(
         place = data.xipos[segment.body]
         solid = [(place, place, 0.02)]
     volume = [
-        np.pi * radius**2 * (float(np.linalg.norm(end - start)) + 4.0 / 3.0 * radius)
+        np.pi * radius**2 * (length(end - start) + 4.0 / 3.0 * radius)
         for start, end, radius in solid
     ]
     shares = [max(mass, 1e-4 * total) / total * part / sum(volume) for part in volume]
@@ -93,7 +94,7 @@ def _shape(name: str, piece: Piece, segment: Segment) -> dict[str, Any]:
     start, end, radius = piece
     shape: dict[str, Any] = {"name": name, "size": round(radius, 5)}
     shape["start"] = numbers(start - segment.origin)
-    if np.linalg.norm(end - start) > 1e-6:
+    if length(end - start) > 1e-6:
         shape["end"] = numbers(end - segment.origin)
     return shape
 

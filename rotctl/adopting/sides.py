@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 
 from rotctl.adopting.tree import Segment
+from rotctl.rotations import dot, length
 
 PLACE = 0.01  # [m] apart, from which it is told
 TURN = 0.05  # [rad] of a range or an axis
@@ -40,16 +41,16 @@ def _differing(
     if _apart(*masses):
         yield "{:.2f} and {:.2f} kg".format(*masses)
     places = [s.origin - segments[s.parent].origin for s in (left, right) if s.parent >= 0]
-    if len(places) == 2 and np.linalg.norm(places[0] - mirror * places[1]) > PLACE:
+    if len(places) == 2 and length(places[0] - mirror * places[1]) > PLACE:
         yield "another place"
     if len(left.hinges) != len(right.hinges):
         yield "other joints"
         return
     for one, other in zip(left.hinges, right.hinges, strict=True):
         axis = -mirror * one.axis  # a pseudo-vector: in a mirror its in-plane part changes sign
-        way = 1.0 if axis @ other.axis >= 0.0 else -1.0
+        way = 1.0 if dot(axis, other.axis) >= 0.0 else -1.0
         ends = sorted((way * other.low, way * other.high))
-        if np.linalg.norm(axis - way * other.axis) > TURN:
+        if length(axis - way * other.axis) > TURN:
             yield f"the axis of {other.source}"
         elif max(abs(one.low - ends[0]), abs(one.high - ends[1])) > TURN:
             yield f"the range of {other.source}"

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.rotations import Array
 
 
@@ -75,8 +76,8 @@ def _hinges(mj: mujoco.MjModel, data: mujoco.MjData, body: int, sign: float) -> 
         found.append(
             Hinge(
                 source=mj.joint(joint).name or f"joint_{joint}",
-                anchor=data.xpos[body] + turned @ mj.jnt_pos[joint],
-                axis=sign * (turned @ mj.jnt_axis[joint]),
+                anchor=data.xpos[body] + product(turned, mj.jnt_pos[joint]),
+                axis=sign * product(turned, mj.jnt_axis[joint]),
                 low=float(low) - now,
                 high=float(high) - now,
                 torque=_torque(mj, joint),
