@@ -55,6 +55,15 @@ def test_a_push_begins_as_the_phase_is_passed(degrees, behaviour):
     )
 
 
+def test_a_change_comes_with_the_control_step_at_its_time():
+    """Though the run's time, a sum of steps, is a little less there."""
+    scenario = build(load(["behaviour=stand", "disturbance=load", "disturbance.time=0.5"]))
+    steps = list(islice(Episode(scenario), 32))
+    told = [i for i, step in enumerate(steps) if step.remark]
+    assert told == [30]
+    assert steps[30].state.time < 0.5
+
+
 def test_a_phase_that_is_never_passed_never_comes():
     onset = Onset(0.0, 1.0)
     assert not any(onset.come(0.1, phase) for phase in (nan, 0.5, 0.9, 0.7, 0.99))

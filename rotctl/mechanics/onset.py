@@ -14,6 +14,8 @@ def _from_the_start(time: float | tuple[float, float]) -> float | tuple[float, f
     return time
 
 
+ROUNDING = 1e-9  # [s] by which a run's time, a sum of its steps, may miss a control step's
+
 Time = Annotated[Drawn, AfterValidator(_from_the_start)]
 """Of a run [s]: a number, or a range to draw from."""
 
@@ -32,7 +34,7 @@ class Onset:
             phase: of the behaviour, a control step ago [rad].
         """
         last, self._last = self._last, phase
-        if time < self._begin:
+        if time < self._begin - ROUNDING:
             return False
         return self._phase is None or passed(self._phase, last, phase)
 
