@@ -64,6 +64,31 @@ def test_a_change_comes_with_the_control_step_at_its_time():
     assert steps[30].state.time < 0.5
 
 
+@pytest.mark.parametrize(
+    ("overrides", "missed"),
+    [
+        (["load", "disturbance.phase=90", "disturbance.time=0.5"], ["chest takes up 5 kg"]),
+        (["slippery", "disturbance.phase=90", "disturbance.time=0.5"],
+         ["the ground has 0.5 of its friction"]),
+        (["push", "disturbance.phase=90"], ["the push"]),
+        (["push", "disturbance.time=[0.5, 1e6]"], ["the push"]),
+        (["wind", "disturbance.time=[0.5, 1e6]"], ["the wind"]),
+        (["load", "disturbance.time=[0.2, 0.3]"], []),
+        (["push", "disturbance.time=[0.2, 0.3]"], []),
+        (["wind"], []),
+        (["none"], []),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_what_never_came_is_told_at_the_end(overrides, missed):
+    """As standing has no phase to come through."""
+    chosen = [f"disturbance={overrides[0]}", *overrides[1:]]
+    buffer, _ = in_memory(build(load(["behaviour=stand", "duration=1", *chosen])))
+    told = [(at, text) for at, text in buffer.events if "never came" in text]
+    assert [text for _, text in told] == [f"to the end it never came: {it}" for it in missed]
+    assert all(at == buffer.trajectory.time[-1] for at, _ in told)
+
+
 def test_a_phase_that_is_never_passed_never_comes():
     onset = Onset(0.0, 1.0)
     assert not any(onset.come(0.1, phase) for phase in (nan, 0.5, 0.9, 0.7, 0.99))

@@ -115,6 +115,10 @@ class Change:
         self._mj, self._onset, self._change, self._told = mj, onset, change, told
         self._done, self.remark = False, ""
 
+    def awaited(self, time: float) -> str:
+        """See `rotctl.mechanics.disturbance.Disturbance`."""
+        return "" if self._done else self._told
+
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `rotctl.mechanics.disturbance.Disturbance`: no force acts."""
         self.remark = ""

@@ -34,6 +34,10 @@ class Disturbance(Protocol):
         """What the log should tell of the control step that began last; mostly empty."""
         ...
 
+    def awaited(self, time: float) -> str:
+        """What has not come by a time [s]; empty if nothing is to."""
+        ...
+
     def apply(self, data: mujoco.MjData, period: float, phase: float) -> Array:
         """Set the forces of the control step that begins, which stay for its `period` [s].
 
@@ -145,6 +149,10 @@ class Nothing:
 
     remark = ""
 
+    def awaited(self, time: float) -> str:
+        """See `Disturbance`."""
+        return ""
+
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`."""
         return np.zeros(6)
@@ -159,6 +167,10 @@ class OnePush:
     begin: float
     end: float
     remark: ClassVar[str] = ""
+
+    def awaited(self, time: float) -> str:
+        """See `Disturbance`."""
+        return "the push" if time <= self.begin else ""
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`; a step that holds a part of the push gets that part of it."""
@@ -177,6 +189,10 @@ class PushAtPhase:
     def __init__(self, push: OnePush, phase: float) -> None:
         """Begin `push` where it would have begun, or later, at that phase [rad]."""
         self._push, self._onset, self._begun = push, Onset(push.begin, phase), False
+
+    def awaited(self, time: float) -> str:
+        """See `Disturbance`."""
+        return "" if self._begun else "the push"
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`."""
@@ -213,6 +229,10 @@ class Air:
         solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
         self._geoms = np.flatnonzero(solid).tolist()
         self._capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
+
+    def awaited(self, time: float) -> str:
+        """See `Disturbance`."""
+        return "the wind" if time <= self._begin else ""
 
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`."""

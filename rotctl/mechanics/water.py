@@ -55,6 +55,10 @@ class Water:
         """Of what disturbs besides."""
         return self._besides.remark
 
+    def awaited(self, time: float) -> str:
+        """Of what disturbs besides."""
+        return self._besides.awaited(time)
+
     def apply(self, data: mujoco.MjData, period: float, phase: float) -> Array:
         """See `Disturbance`."""
         data.xfrc_applied[:] = 0.0

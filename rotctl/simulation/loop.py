@@ -84,4 +84,6 @@ def simulate(
         if look(buffer, i + 1):
             steps = i + 1
             break
+    if missed := parts.disturbance.awaited(steps / rate):
+        buffer.add_event(buffer.trajectory.time[steps - 1], f"to the end it never came: {missed}")
     return Outcome(buffer.trimmed(steps), parts.stepper.complaint(episode.data))
