@@ -1,5 +1,7 @@
 """Water: what it does to a body against sums that know no law of it."""
 
+from copy import copy
+
 import mujoco
 import numpy as np
 import pytest
@@ -66,6 +68,25 @@ def test_it_takes_speed_and_never_throws_back(pool, speed):
     momentum = pool.model.mj.body_mass[own] * speed
     assert (along < 0.0).all()
     assert (along > -momentum).all()
+
+
+def test_who_loses_mass_in_the_water_is_not_thrown_back_either(pool):
+    """It is borne as before, by its volume; what the drag can take is that of the mass it has."""
+    mj, data = copy(pool.model.mj), mujoco.MjData(pool.model.mj)
+    data.qpos[:3], data.qpos[3:7] = (3.0, 0.0, DEEP), (1.0, 0.0, 0.0, 0.0)
+    mujoco.mj_step1(mj, data)
+    water = Water(mj, pool.model.ground, Nothing())
+    borne = water.apply(data, PERIOD, np.nan)
+    mj.body_mass[:] *= 0.1
+    assert water.apply(data, PERIOD, np.nan) == pytest.approx(borne, rel=1e-12)
+    still = data.xfrc_applied[:, 0].copy()
+    data.qvel[0] = 30.0
+    mujoco.mj_step1(mj, data)
+    water.apply(data, PERIOD, np.nan)
+    own = is_character(mj)
+    taken = (data.xfrc_applied[:, 0] - still)[own] * PERIOD
+    assert (taken < 0.0).all()
+    assert (taken > -mj.body_mass[own] * 30.0).all()
 
 
 def test_long_and_straight_it_glides(pool):

@@ -25,14 +25,15 @@ class Limb(NamedTuple):
     """A body as a box in its own frame.
 
     Attributes:
-        body: MuJoCo id; mass [kg].
+        body: MuJoCo id.
+        displaced: mass that it was made with, to which its volume goes [kg].
         middle, half: (3,) of the box [m].
         face: (3,) areas shown along its axes [m2].
         along: number of the axis of its length.
     """
 
     body: int
-    mass: float
+    displaced: float
     middle: Array
     half: Array
     face: Array
@@ -70,7 +71,8 @@ class Water:
             share = (self._pool.water - float(place[2]) + tall) / (2.0 * tall)
             if share <= 0.0:
                 continue
-            force = min(share, 1.0) * (limb.mass * self._weight + self._drag(data, limb, period))
+            borne = limb.displaced * self._weight
+            force = min(share, 1.0) * (borne + self._drag(data, limb, period))
             middle = data.xipos[limb.body]
             data.xfrc_applied[limb.body, :3] += force
             total[:3] += force
@@ -96,7 +98,8 @@ class Water:
         length = float(way[limb.along])
         coefficient = pool.drag + (pool.ends - pool.drag) * length * length
         rate = 0.5 * pool.density * coefficient * float((limb.face * way).sum()) * speed  # [kg/s]
-        return flow * (rate / (1.0 + rate * period / limb.mass))
+        mass = float(self._mj.body_mass[limb.body])  # now: it may have taken up a load
+        return flow * (rate / (1.0 + rate * period / mass))
 
 
 def _limb(mj: mujoco.MjModel, body: int) -> Limb | None:
@@ -116,5 +119,5 @@ def _limb(mj: mujoco.MjModel, body: int) -> Limb | None:
     x, y, z = (high - low).tolist()
     face = ROUND * np.array([y * z, x * z, x * y])
     along = 0 if z < FLAT * x else 2
-    mass, middle, half = float(mj.body_mass[body]), 0.5 * (low + high), 0.5 * (high - low)
-    return Limb(body, mass, middle, half, face, along)
+    displaced, middle, half = float(mj.body_mass[body]), 0.5 * (low + high), 0.5 * (high - low)
+    return Limb(body, displaced, middle, half, face, along)
