@@ -1,42 +1,50 @@
 """What choices of config groups make together: what Hydra would make of them, without it.
 
 To import Hydra and to compose with it takes longer than to simulate ten seconds. Most configs are
-plain: files whose defaults name others of their group, or choices for other groups. These are
-composed here; of whatever else there is in a file nothing is made, and Hydra is asked. A test holds
-all that is shipped to what Hydra makes of it.
+plain: files whose defaults name others of their group, or choices for other groups, and that may
+say in a first line `# @package` which key they are about. These are composed here; of whatever
+else there is in a file nothing is made, and Hydra is asked. A test holds all that is shipped to
+what Hydra makes of it.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import documents, files, plain
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, content, named_file
+from rotctl.listing import choices, conf_dir, content, named_file
 
 _KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 _INTEGER = re.compile(r"[+-]?(?:0|[1-9][0-9]{0,17})")
 _FLOAT = re.compile(r"[+-]?(?:0|[1-9][0-9]*)\.[0-9]+(?:e[+-]?[0-9]+)?")
 _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _NO_WORDS = ("true", "false", "null", "inf", "nan")  # what YAML or Hydra takes for more
+_PACKAGE = re.compile(r"# @package ([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\n", re.ASCII)
 _ELSEWHERE = re.compile(r"override /(\w+)@_global_\.\1")
 SELF, MISSING = "_self_", "???"
 IN_A_CIRCLE = "defaults: a file builds on itself, or on what builds on it"
 
 
 class Assignment(NamedTuple):
-    """A value for a key, or the choice of a group."""
+    """A value for a key, or the choice of a group, with a `+` where it is added to a config."""
 
     key: str
     value: Any
 
 
 def simple(override: str) -> Assignment | None:
-    """An override that is a number or a word; None for whatever needs Hydra's grammar."""
+    """An override that is a number or a word; None for whatever needs Hydra's grammar.
+
+    Of what is added, only choices are taken.
+    """
     key, _, text = override.partition("=")
-    if len(override) > documents.DEEPEST**2 or not _KEY.fullmatch(key) or key.startswith("hydra"):
+    plus, bare = key.startswith("+"), key.removeprefix("+")
+    if len(override) > documents.DEEPEST**2 or not _KEY.fullmatch(bare) or bare.startswith("hydra"):
+        return None
+    if plus and text not in choices(bare):
         return None
     if _INTEGER.fullmatch(text):
         return Assignment(key, int(text))
@@ -54,7 +62,7 @@ def composed(chosen: Iterable[Assignment]) -> dict[str, Any] | None:
         InputError: a file is wrong; one line that names it.
     """
     try:
-        return _composed(dict(chosen))
+        return _composed(list(chosen))
     except _NotPlainError:
         return None
     except RecursionError:
@@ -71,33 +79,42 @@ class _File(NamedTuple):
     Attributes:
         others: of its group that it builds on, and `SELF`, in the order in which they are merged.
         asks: group -> choice, for other groups.
+        package: the key that it is about, if not its group.
     """
 
     own: dict[str, Any]
     others: tuple[str, ...]
     asks: Mapping[str, str]
+    package: str
 
 
-def _composed(chosen: Mapping[str, str]) -> dict[str, Any]:
+def _composed(chosen: Sequence[Assignment]) -> dict[str, Any]:
     root = content(conf_dir() / "config.yaml")
     listed = [entry for entry in root.get("defaults", []) if entry != SELF]
     if root.get("defaults", [])[-1:] != [SELF] or not all(isinstance(e, dict) for e in listed):
         raise _NotPlainError
     usual = {group: name for entry in listed for group, name in entry.items()}
-    if not chosen.keys() <= usual.keys() or len(usual) != len(listed):
+    asked = {key: name for key, name in chosen if not key.startswith("+")}
+    more = [(key.removeprefix("+"), name) for key, name in chosen if key.startswith("+")]
+    added = dict(more)
+    known = asked.keys() <= usual.keys() and not added.keys() & usual.keys()
+    if not known or len(usual) != len(listed) or len(added) != len(more):
         raise _NotPlainError
-    asked = dict(chosen)
+    asked |= added
     settled: set[str] = set()
-    for group in reversed(usual):  # who comes later may ask for what comes before
+    for group in reversed([*usual, *added]):  # who comes later may ask for what comes before
         settled.add(group)
-        for other, name in _asks(group, asked.setdefault(group, usual[group])):
+        for other, name in _asks(group, asked.setdefault(group, usual.get(group, ""))):
             if other not in usual or other in settled:
                 raise _NotPlainError
             asked.setdefault(other, name)
     data: dict[str, Any] = {}
     for group in usual:
-        data = _merged(data, {group: _content(group, asked[group])})
-    return _merged(data, {key: value for key, value in root.items() if key != "defaults"})
+        data = _merged(data, _placed(group, asked[group]))
+    data = _merged(data, {key: value for key, value in root.items() if key != "defaults"})
+    for group in added:
+        data = _merged(data, _placed(group, asked[group]))
+    return data
 
 
 def _asks(group: str, name: str) -> list[tuple[str, str]]:
@@ -109,10 +126,17 @@ def _asks(group: str, name: str) -> list[tuple[str, str]]:
     return found
 
 
+def _placed(group: str, name: str) -> Any:
+    """What is in a file, below the keys that lead to it."""
+    return plain.put({}, plain.way(_file(group, name).package or group), _content(group, name))
+
+
 def _content(group: str, name: str) -> dict[str, Any]:
     file = _file(group, name)
     data: dict[str, Any] = {}
     for other in file.others:
+        if other != SELF and _file(group, other).package != file.package:
+            raise _NotPlainError
         data = _merged(data, file.own if other == SELF else _content(group, other))
     return data
 
@@ -144,10 +168,13 @@ def _read(path: Path, changed: int) -> _File:
             raise _NotPlainError
         asks[match[1]] = name
     own = {key: value for key, value in data.items() if key != "defaults"}
-    odd = "@package" in files.text(path, documents.LARGEST, linked=True)
+    text = files.text(path, documents.LARGEST, linked=True)
+    package = _PACKAGE.match(text)
+    odd = text.count("@package") > (1 if package else 0)
+    others = others or [SELF]
     if odd or SELF not in others or any(map(_read_otherwise, plain.leaves(own))):
         raise _NotPlainError
-    return _File(own, tuple(others), asks)
+    return _File(own, tuple(others), asks, package[1] if package else "")
 
 
 def _read_otherwise(leaf: tuple[plain.Way, Any]) -> bool:

@@ -130,7 +130,12 @@ def is_own(path: Path) -> bool:
 
 
 def choices(group: str) -> list[str]:
-    """The choices of a config group, sorted; empty if there is no such group."""
+    """The choices of a config group, sorted; empty if there is no such group.
+
+    Args:
+        group: also as it is written to add a choice to a config, `+finish`.
+    """
+    group = group.removeprefix("+")
     known = group.isidentifier() and group not in _NO_GROUPS
     if not known or not os.path.isdir(conf_dir() / group):  # of a name of any length
         return []

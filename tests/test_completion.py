@@ -40,6 +40,7 @@ def words(line, capsys):
         ("rotctl run behaviour.shap", []),
         ("rotctl run +fi", ["+finish="]),
         ("rotctl run +finish=", ["+finish=stand"]),
+        ("rotctl run +finish=stand behaviour.finish.af", ["behaviour.finish.after="]),
         ("rotctl run +exp", []),
         ("rotctl sweep +exp", ["+experiment="]),
         ("rotctl sweep +experiment=tab", ["+experiment=table1"]),

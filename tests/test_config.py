@@ -133,6 +133,10 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "reference is no part of a config, its choices are added to one: "
             "write +reference=CHOICE",
         ),
+        (
+            "finish=stand",
+            "finish is no part of a config, its choices are added to one: write +finish=CHOICE",
+        ),
         ("+reference=nope", 'reference="nope": no such choice; valid: humanoid3d_roll'),
         ("~physics", "physics: missing, it cannot be left out"),
         # Choices.
@@ -421,14 +425,21 @@ def one_of_each():
     return [*({"behaviour": name} for name in groups()["behaviour"]), *mixed]
 
 
-BROUGHT = ("behaviour", "reference", "finish", "course")  # the others are added with a plus
-CHOICES = [[f"{group}={name}" for group, name in some.items()] for some in one_of_each()]
+ADDED = [group for group in groups() if group not in composed([])]  # with a plus
+BROUGHT = ("behaviour", *ADDED)
+CHOICES = [
+    *([f"{group}={name}" for group, name in some.items()] for some in one_of_each()),
+    *(["behaviour=forward_roll", f"+{key}={name}"] for key in ADDED for name in groups()[key]),
+    ["+finish=stand", "+course=slalom", "behaviour=forward_roll"],  # who is last asks first
+    ["+course=slalom", "+finish=stand", "criteria=rolling"],
+]
 
 
 @pytest.mark.parametrize("overrides", CHOICES, ids=" ".join)
 def test_what_choices_make_is_what_hydra_makes_of_them(overrides):
     made = choosing.composed(map(simple, overrides))
-    assert made == by_hydra(overrides, [single(text) for text in overrides])
+    wanted = by_hydra(overrides, [single(text) for text in overrides])
+    assert json.dumps(made) == json.dumps(wanted)  # the order too
 
 
 @pytest.mark.parametrize(
@@ -467,14 +478,52 @@ def test_what_is_not_simple_is_left_to_hydra(text):
         ("start/rest.yaml", "defaults: [tucked]\n"),
         ("start/rest.yaml", "defaults: [_self_, {optional tucked: x}]\n"),
         ("config.yaml", "defaults: [_self_, {start: rest}]\n"),
+        ("finish/stand.yaml", "# @package _global_\n"),
+        ("finish/stand.yaml", "# @package behaviour.finish\n# @package start\n"),
+        ("finish/stand.yaml", "\n# @package behaviour.finish\nafter: 1.0\n"),
+        ("finish/stand.yaml", "defaults: [{override /course@_global_.course: turn}]\n"),
+        ("finish/other.yaml", "after: 1.0\n"),
     ],
 )
 def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text):
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "conf" / file).write_text(text)
+    if file == "finish/other.yaml":  # is about another key than the one that builds on it
+        stand = "# @package behaviour.finish\ndefaults: [other, _self_]\n"
+        (tmp_path / "conf" / "finish" / "stand.yaml").write_text(stand)
     monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
     (tmp_path / "package").mkdir()
-    assert choosing.composed([simple("start=rest")]) is None
+    assert choosing.composed([simple("start=rest"), simple("+finish=stand")]) is None
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["+finish=stand", "behaviour.finish.after=3", "seed=2"],
+        ["behaviour.finish.after=3", "+finish=stand"],  # choices come first wherever they stand
+        ["+course=circle", "behaviour.course.legs=[[1,20]]", "+behaviour.poses.a.hip_z=0.1"],
+    ],
+)
+def test_values_are_set_on_what_is_added_as_hydra_does(overrides):
+    assert composed(overrides) == by_hydra(overrides, [single(text) for text in overrides])
+
+
+def test_an_own_choice_that_only_hydra_reads_can_be_added(tmp_path):
+    (tmp_path / "course").mkdir()
+    file = tmp_path / "course" / "mine.yaml"
+    text = "# @package behaviour.course\ndefaults: [turn, _self_]\nschedule: [[1e0, 5]]\n"
+    file.write_text(text)
+    with listing.own(tmp_path):
+        assert simple("+course=mine") == ("+course", "mine")
+        assert choosing.composed([simple("+course=mine")]) is None
+        assert load(["+course=mine"]).behaviour.course.schedule == ((1.0, 5.0),)
+
+
+@pytest.mark.parametrize(
+    "text", ["+course=nope", "+seed=1", "+nobody=a", "++course=turn", "+a.b=c"]
+)
+def test_nothing_else_that_is_added_is_simple(text):
+    assert simple(text) is None
 
 
 @pytest.mark.parametrize(

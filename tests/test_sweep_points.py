@@ -71,6 +71,8 @@ def test_grids_follow_each_other():
         ["behaviour.poses.a={knee: 1.0},{knee: 2.0}", "behaviour.poses.a.hip_y=0.5"],
         ["~behaviour.description", "seed=1,2"],
         ["++duration=1,2"],
+        ["seed=1,2", "+course=circle,slalom", "behaviour.course.pull=10", "behaviour=forward_roll"],
+        ["+course=glob(*)", "behaviour=forward_roll"],
         ["physics.substeps=4,8", "controller.solver=boxqp,osqp", "controller.form=condensed"],
     ],
 )
@@ -97,6 +99,9 @@ def test_the_values_are_those_of_the_config():
         (["sed=1,2"], "unknown key 'sed'; did you mean seed? valid keys: "),
         (["duration.x=1,2"], "unknown key 'duration.x'; valid keys under duration: none, it is "),
         (["start=rest,ret"], 'start="ret": no such choice; did you mean rest? valid: '),
+        (["+start=rest,tucked"], "start is there already; write start=VALUE"),
+        (["course=circle,turn"], "course is no part of a config, its choices are added to one: "),
+        (["+course=circle,tur"], 'course="tur": no such choice; did you mean turn? valid: '),
         (["start=glob(x*)"], "start=glob(x*): no choice matches; valid: "),
         (["seed=glob(*)"], "seed=glob(*): no such group"),
         (["seed=interval(0,1)"], "seed=interval(0,1): has no steps; write seed=range(start,stop"),
@@ -130,6 +135,14 @@ def test_what_does_not_change_is_composed_and_checked_once(monkeypatch):
     assert len({id(point.config.character) for point in found}) <= 2
 
 
+@pytest.mark.parametrize("added", ["+course=circle,turn", "+course=choice(circle,turn)"])
+def test_what_is_added_is_composed_once(monkeypatch, added):
+    module, loaded = import_module("rotctl.sweep.points"), []
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
+    assert len(list(points([["behaviour=forward_roll", added, "seed=range(0,50)"]]))) == 100
+    assert loaded == [["behaviour=forward_roll", f"+course={name}"] for name in ("circle", "turn")]
+
+
 @pytest.mark.parametrize("bad", ["seed=-1", "controller.pose.weight=-2", "terrain.name=''"])
 def test_a_value_that_is_wrong_is_told_as_for_a_single_run(bad):
     with pytest.raises(InputError) as alone:
@@ -142,7 +155,8 @@ def test_a_value_that_is_wrong_is_told_as_for_a_single_run(bad):
 @pytest.mark.parametrize(
     "override",
     ["seed=3", "seed=1,2,10", "seed=range(0,5)", "seed=range(-2,1)", "duration=0.50,1.0,2.5",
-     "start=rest,tucked", "behaviour=stand", "behaviour.roll_about=left,right"],
+     "start=rest,tucked", "behaviour=stand", "behaviour.roll_about=left,right",
+     "+course=circle,turn", "+finish=stand"],
 )  # fmt: skip
 def test_what_needs_no_hydra_is_what_hydra_makes_of_it(override):
     assert quickly(override) == values(override)
@@ -151,7 +165,8 @@ def test_what_needs_no_hydra_is_what_hydra_makes_of_it(override):
 @pytest.mark.parametrize(
     "override",
     ["seed=range(5,0)", "seed=range(0,9,2)", "seed=range(0,1000000)", "start=no", "start=glob(*)",
-     "seed=1,", "a=x y", "+a=1", "a='x,y'", "a=[1,2]", "a=choice(1,2)", "seed", "seed=1 ,2"],
+     "+course=no", "seed=1,", "a=x y",
+     "+a=1", "a='x,y'", "a=[1,2]", "a=choice(1,2)", "seed", "seed=1 ,2"],
 )  # fmt: skip
 def test_all_other_syntax_is_left_to_hydra(override):
     assert quickly(override) is None

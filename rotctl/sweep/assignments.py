@@ -45,11 +45,12 @@ def quickly(override: str) -> list[Assignment] | None:
     else:
         texts = [f"{key}={part}" for part in text.split(",")]
     made = []
-    valid = choices(key) if key.isidentifier() else []
+    valid = choices(key)
     for one in texts:
         single = simple(one)
         if single is None or valid and single.value not in valid:
             return None
         way = None if valid else plain.way(key)
-        made.append(Assignment(f"{key}={single.value}", key, way, single.value, False))
+        text = f"{key}={single.value}"
+        made.append(Assignment(text, key.removeprefix("+"), way, single.value, False))
     return made

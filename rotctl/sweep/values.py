@@ -60,7 +60,8 @@ def _assignment(text: str, found: Override) -> Assignment:
 
 def _way(found: Override) -> tuple[plain.Way | None, bool]:
     """The way to the value that an override sets, if that is all; whether its order may matter."""
-    group = bool(choices(str(found.key_or_group))) and found.type == OverrideType.CHANGE
+    chooses = found.type in (OverrideType.CHANGE, OverrideType.ADD)
+    group = bool(choices(str(found.key_or_group))) and chooses
     if found.type != OverrideType.CHANGE or found.package or group:
         return None, bool(found.package) or not group
     return plain.way(str(found.key_or_group)), False
