@@ -135,6 +135,21 @@ def test_quartiles_are_those_of_the_runs(made):
     assert row["revolutions_q75"] == np.percentile(values, 75)
 
 
+def test_quartiles_are_of_the_values_that_are_there():
+    """Groups of one run to four, with none, some and all of their values, words and infinities."""
+    values = [1.5, None, 2, "x", True, None, None, 3.25, 0.1, 0.7, np.inf, -1.0, 2.5]
+    names = [0, 1, 2, 2, 2, 3, 3, 4, 4, 4, 4, 5, 5]
+    state = ["done"] * 12 + ["not run"]
+    rows = pd.DataFrame({"x": names, "m": values, "status": state, "success": True, "code": ""})
+    groups = grouped(Table(rows, ["x"], ["m"], []), ["x"]).rows
+    for _, group in groups.iterrows():
+        there = rows[(rows["x"] == group["x"]) & (rows["status"] == "done")]
+        wanted = pd.to_numeric(there["m"], errors="coerce").astype(float)
+        found = group[["m_q25", "m_median", "m_q75"]].astype(float)
+        np.testing.assert_array_equal(found, wanted.quantile([0.25, 0.5, 0.75]))
+    assert list(groups["n"]) == [1, 1, 3, 2, 4, 1]
+
+
 def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep):
     logs = sorted(sweep.glob("*/run.h5"))
     change(logs[0], {"success": False, "failure_reason": "stalled"})

@@ -1,12 +1,14 @@
 """Success rates with their uncertainty, and quartiles, by group; for people and for programs."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rotctl import files
 from rotctl.errors import InputError
@@ -15,12 +17,14 @@ from rotctl.metrics import appearance, pace, rolling
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
+from rotctl.rotations import Array
 
 # Too many for a table that people read.
 IN_FILES_ONLY = {
     *rolling.IN_FILES_ONLY,
     *(column.name for kind in (appearance, pace) for column in kind.COLUMNS),
 }
+Name = tuple[object, ...]  # of a group: the values of its keys
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
 
 
@@ -66,36 +70,59 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         if not mixed and "code" not in keys:
             keys.append("code")
     rows = [
-        dict(zip(keys, name, strict=True)) | _measured(group, table.metrics)
-        for name, group in _in_order(table.rows, keys)
+        dict(zip(keys, name, strict=True)) | measured for name, measured in _measured(table, keys)
     ]
     return Groups(pd.DataFrame(rows), keys, table.metrics, notes)
 
 
-def _in_order(rows: pd.DataFrame, keys: list[str]) -> list[tuple[tuple[object, ...], pd.DataFrame]]:
-    """Groups in the order of the table, which is sorted; runs without a value are a group too."""
+def _measured(table: Table, keys: list[str]) -> Iterator[tuple[Name, dict[str, Any]]]:
+    """Keys of each group and how its runs did; read into arrays once, as groups may be many."""
+    done = (table.rows["status"] == DONE).to_numpy()
+    success = table.rows["success"].eq(True).to_numpy()  # may be missing
+    numbers = [pd.to_numeric(table.rows[metric], errors="coerce") for metric in table.metrics]
+    values = np.array([column.to_numpy(dtype=float) for column in numbers]).T
+    for name, runs in _in_order(table.rows, keys):
+        with_result = runs[done[runs]]
+        n, succeeded = len(with_result), int(success[with_result].sum())
+        low, high = wilson(succeeded, n)
+        row: dict[str, Any] = {
+            "n": n,
+            "succeeded": succeeded,
+            "success_rate": succeeded / n if n else None,
+            "success_low": low,
+            "success_high": high,
+            "no_result": len(runs) - n,
+        }
+        if table.metrics:
+            for metric, found in zip(table.metrics, _quartiles(values[with_result]), strict=True):
+                row |= {f"{metric}_{q}": x for q, x in zip(QUARTILES, found, strict=True)}
+        yield name, row
+
+
+def _in_order(rows: pd.DataFrame, keys: list[str]) -> Iterator[tuple[Name, NDArray[np.intp]]]:
+    """Groups and which rows they are, in the order of the table, which is sorted.
+
+    Runs without a value are a group too.
+    """
     if not keys:
-        return [((), rows)]
-    return [(name, group) for name, group in rows.groupby(keys, sort=False, dropna=False)]
+        yield (), np.arange(len(rows))
+        return
+    named = rows[keys].reset_index(drop=True)
+    for name, group in named.groupby(keys, sort=False, dropna=False):
+        yield name, group.index.to_numpy()
 
 
-def _measured(group: pd.DataFrame, metrics: list[str]) -> dict[str, object]:
-    done = group[group["status"] == DONE]
-    n, succeeded = len(done), int(done["success"].astype(bool).sum())
-    low, high = wilson(succeeded, n)
-    row: dict[str, object] = {
-        "n": n,
-        "succeeded": succeeded,
-        "success_rate": succeeded / n if n else None,
-        "success_low": low,
-        "success_high": high,
-        "no_result": len(group) - n,
-    }
-    for metric in metrics:
-        values = pd.to_numeric(done[metric], errors="coerce").astype(float)
-        for name, share in QUARTILES.items():
-            row[f"{metric}_{name}"] = values.quantile(share)
-    return row
+def _quartiles(values: Array) -> Array:
+    """Of each column of values, of those that are there; NaN where there is none."""
+    found = np.full((values.shape[1], len(QUARTILES)), np.nan)
+    there = ~np.isnan(values)
+    whole = there.all(axis=0) & (len(values) > 0)
+    shares = list(QUARTILES.values())
+    if whole.any():
+        found[whole] = np.quantile(values[:, whole], shares, axis=0).T
+    for i in np.flatnonzero(~whole & there.any(axis=0)):
+        found[i] = np.quantile(values[there[:, i], i], shares)
+    return found
 
 
 def markdown(groups: Groups) -> str:
