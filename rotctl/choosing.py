@@ -2,9 +2,8 @@
 
 To import Hydra and to compose with it takes longer than to simulate ten seconds. Most configs are
 plain: files whose defaults name others of their group, or choices for other groups, and that may
-say in a first line `# @package` which key they are about. These are composed here; of whatever
-else there is in a file nothing is made, and Hydra is asked. A test holds all that is shipped to
-what Hydra makes of it.
+say in a first line `# @package` which key they are about. These are composed here; for
+whatever else is in a file Hydra is asked. A test holds all that is shipped to what Hydra makes.
 """
 
 import re
@@ -15,7 +14,7 @@ from typing import Any, NamedTuple
 
 from rotctl import documents, files, plain
 from rotctl.errors import InputError
-from rotctl.listing import choices, conf_dir, content, named_file
+from rotctl.listing import choices, conf_dir, content, named_file, require_plain
 
 _KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 _INTEGER = re.compile(r"[+-]?(?:0|[1-9][0-9]{0,17})")
@@ -41,10 +40,10 @@ def simple(override: str) -> Assignment | None:
     Of what is added, only choices are taken.
     """
     key, _, text = override.partition("=")
-    plus, bare = key.startswith("+"), key.removeprefix("+")
+    bare = key.removeprefix("+")
     if len(override) > documents.DEEPEST**2 or not _KEY.fullmatch(bare) or bare.startswith("hydra"):
         return None
-    if plus and text not in choices(bare):
+    if bare != key and text not in choices(bare):
         return None
     if _INTEGER.fullmatch(text):
         return Assignment(key, int(text))
@@ -56,14 +55,16 @@ def simple(override: str) -> Assignment | None:
 
 
 def composed(chosen: Iterable[Assignment]) -> dict[str, Any] | None:
-    """The config of the choices alone; None where Hydra has to be asked.
+    """The config of the choices alone; None where Hydra has to be asked, who may read their files.
 
     Raises:
         InputError: a file is wrong; one line that names it.
     """
+    every = list(chosen)
     try:
-        return _composed(list(chosen))
+        return _composed(every)
     except _NotPlainError:
+        require_plain([(key.removeprefix("+"), name) for key, name in every])
         return None
     except RecursionError:
         raise InputError(IN_A_CIRCLE) from None

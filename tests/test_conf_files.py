@@ -68,6 +68,16 @@ def test_what_a_file_may_not_say(mine, text, message, monkeypatch):
     assert load([]).behaviour.name == "forward_roll_1"
 
 
+@pytest.mark.parametrize("behaviour", ["behaviour=mine", "+behaviour=mine"])
+def test_a_file_is_checked_also_beside_one_that_only_hydra_reads(mine, conf, behaviour):
+    mine("speed: 1e0")
+    path = conf / "start" / "rest.yaml"
+    path.write_text("name: ${oc.env:HOME}\n")
+    assert complaint(behaviour, "start=rest") == (
+        f"{path}: name: interpolations are not honoured; give a value"
+    )
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -476,7 +476,7 @@ def test_what_is_not_simple_is_left_to_hydra(text):
         ("start/rest.yaml", "# @package _global_\n"),
         ("start/rest.yaml", "pitch: ???\n"),
         ("start/rest.yaml", "defaults: [tucked]\n"),
-        ("start/rest.yaml", "defaults: [_self_, {optional tucked: x}]\n"),
+        ("start/rest.yaml", "defaults: [_self_, {start: tucked}]\n"),
         ("config.yaml", "defaults: [_self_, {start: rest}]\n"),
         ("finish/stand.yaml", "# @package _global_\n"),
         ("finish/stand.yaml", "# @package behaviour.finish\n# @package start\n"),
