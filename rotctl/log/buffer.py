@@ -10,6 +10,7 @@ groups cannot collide::
 
 from dataclasses import dataclass, field
 from math import prod
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -23,13 +24,16 @@ from rotctl.log.rows import (
     ModelEntries,
     SolverRows,
     TrajectoryRows,
-    members,
 )
 from rotctl.log.schema import CONSTANTS, EVENT_BYTES, MAX_TOTAL_BYTES, SCHEMA, DatasetSpec
 
 _ALLOCATED = {
     name: spec for name, spec in SCHEMA.items() if spec.shape and "events" not in spec.shape
 }
+# A run asks several times for all arrays: what their names have in common is worked out once.
+_PARTS = {name: name.partition("/")[::2] for name in _ALLOCATED}
+_PER_STEP = {name: leaf for name, (_, leaf) in _PARTS.items() if "steps" in SCHEMA[name].shape}
+_all_of = attrgetter(*[name.replace("/", ".") for name in _ALLOCATED])
 
 
 @dataclass(frozen=True)
@@ -80,9 +84,9 @@ class TrajectoryBuffer:
         for name, size in sizes.items():
             if size < 0:
                 raise InputError(f"{name} must be >= 0, got {size}")
+        shapes = {name: _shape(spec, sizes) for name, spec in _ALLOCATED.items()}
         total = sum(
-            np.dtype(spec.dtype).itemsize * prod(_shape(spec, sizes))
-            for spec in _ALLOCATED.values()
+            np.dtype(spec.dtype).itemsize * prod(shapes[name]) for name, spec in _ALLOCATED.items()
         )
         if total > MAX_TOTAL_BYTES:
             raise InputError(
@@ -90,7 +94,7 @@ class TrajectoryBuffer:
                 f"a log holds {MAX_TOTAL_BYTES / 2**30:g} GiB: choose a shorter run or a smaller "
                 "capacity"
             )
-        return _from_arrays({name: _allocate(spec, sizes) for name, spec in _ALLOCATED.items()}, [])
+        return _from_arrays({name: _allocate(name, shape) for name, shape in shapes.items()}, [])
 
     @property
     def steps(self) -> int:
@@ -115,7 +119,7 @@ class TrajectoryBuffer:
         if not 0 <= steps <= self.steps:
             raise InputError(f"steps must be between 0 and {self.steps}, got {steps}")
         rows = {
-            name: array[:steps] if "steps" in SCHEMA[name].shape else array
+            name: array[:steps] if name in _PER_STEP else array
             for name, array in self._allocated().items()
         }
         return _from_arrays(rows, list(self.events))
@@ -131,24 +135,15 @@ class TrajectoryBuffer:
 
     def per_step(self) -> dict[str, NDArray[Any]]:
         """Returns the arrays of one row a control step, by the last part of their paths."""
-        return {
-            name.partition("/")[2]: array
-            for name, array in self._allocated().items()
-            if "steps" in SCHEMA[name].shape
-        }
+        arrays = self._allocated()
+        return {leaf: arrays[name] for name, leaf in _PER_STEP.items()}
 
     def _allocated(self) -> dict[str, NDArray[Any]]:
-        return {name: _array(self, name) for name in _ALLOCATED}
+        return dict(zip(_ALLOCATED, _all_of(self), strict=True))
 
 
-def _array(buffer: TrajectoryBuffer, name: str) -> NDArray[Any]:
-    group, _, leaf = name.partition("/")
-    array: NDArray[Any] = getattr(getattr(buffer, group), leaf)
-    return array
-
-
-def _allocate(spec: DatasetSpec, sizes: dict[str, int]) -> NDArray[Any]:
-    shape = _shape(spec, sizes)
+def _allocate(name: str, shape: list[int]) -> NDArray[Any]:
+    spec = _ALLOCATED[name]
     if not spec.fill:  # memory of long runs that nobody has touched yet costs nothing
         return np.zeros(shape, dtype=spec.dtype)
     return np.full(shape, spec.fill, dtype=spec.dtype)
@@ -161,13 +156,17 @@ def _shape(spec: DatasetSpec, sizes: dict[str, int]) -> list[int]:
 def _from_arrays(
     arrays: dict[str, NDArray[Any]], events: list[tuple[float, str]]
 ) -> TrajectoryBuffer:
+    members: dict[str, dict[str, NDArray[Any]]] = {}
+    for name, array in arrays.items():
+        group, leaf = _PARTS[name]
+        members.setdefault(group, {})[leaf] = array
     return TrajectoryBuffer(
-        trajectory=TrajectoryRows(**members("trajectory", arrays)),
-        command=CommandRows(**members("command", arrays)),
-        contacts=ContactRows(**members("contacts", arrays)),
-        disturbance=DisturbanceRows(**members("disturbance", arrays)),
-        solver=SolverRows(**members("solver", arrays)),
-        model=ModelEntries(**members("model", arrays)),
+        trajectory=TrajectoryRows(**members["trajectory"]),
+        command=CommandRows(**members["command"]),
+        contacts=ContactRows(**members["contacts"]),
+        disturbance=DisturbanceRows(**members["disturbance"]),
+        solver=SolverRows(**members["solver"]),
+        model=ModelEntries(**members["model"]),
         events=events,
     )
 

@@ -5,7 +5,6 @@ schema has and a group has not, or the other way round, is refused when a buffer
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,12 +97,3 @@ class ModelEntries:
     body: Names
     task: Names
     torque_limit: Doubles
-
-
-def members(group: str, arrays: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """The arrays of a group, by the last part of their paths."""
-    return {
-        name.partition("/")[2]: array
-        for name, array in arrays.items()
-        if name.startswith(f"{group}/")
-    }
