@@ -9,6 +9,7 @@ import numpy as np
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
+from rotctl.same import kept
 
 COLUMNS = (
     Column("head_share", "Head's share of the ground's upward impulse", ""),
@@ -88,7 +89,7 @@ def measure(log: Arrays, mj: mujoco.MjModel | None, commanded: float, period: fl
         force_p99=float(np.percentile(np.sqrt((ground**2).sum(axis=1)), 99)) / weight,
         force_peak=float(floats(log, "contacts/ground_force_peak").max()) / weight,
         knees_apart=float(np.percentile(np.sqrt((knees**2).sum(axis=1)), 95)),
-        limb_overlap=_overlap(mj, body, skeleton),
+        limb_overlap=_overlap(mj, skeleton),
         **_over_the_head(log, mj, skeleton, -1.0 if commanded < 0 else 1.0, period),
     )
 
@@ -123,6 +124,7 @@ def _over_the_head(
     }
 
 
+@kept(most=8)
 def _bodies(mj: mujoco.MjModel) -> dict[str, int]:
     """Ids of the bodies looked at, by name; none if the character lacks one."""
     names = (*TRUNK, *(limb + side for limb in LIMBS for side in SIDES))
@@ -183,13 +185,20 @@ def _height_of_head(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Arra
     return np.asarray(lowest - np.interp(along, way, ground))
 
 
-def _overlap(mj: mujoco.MjModel, body: dict[str, int], skeleton: Skeleton) -> float:
+def _overlap(mj: mujoco.MjModel, skeleton: Skeleton) -> float:
+    limbs, trunk, pairs = _apart(mj)
+    return overlap(skeleton.capsules(limbs, EVERY), skeleton.capsules(trunk, EVERY), pairs)
+
+
+@kept(most=8)
+def _apart(mj: mujoco.MjModel) -> tuple[list[int], list[int], list[tuple[int, int]]]:
+    """Geoms of the limbs and of the trunk, and which of both should keep apart."""
+    body = _bodies(mj)
     limbs = _geoms(mj, [body[limb + side] for limb in LIMBS for side in SIDES])
     trunk = _geoms(mj, [body[part] for part in TRUNK])
     hangs_on = mj.body_parentid[mj.geom_bodyid[limbs]]
     apart = hangs_on[:, None] != mj.geom_bodyid[trunk][None]
-    pairs = [(int(i), int(k)) for i, k in zip(*np.nonzero(apart), strict=True)]
-    return overlap(skeleton.capsules(limbs, EVERY), skeleton.capsules(trunk, EVERY), pairs)
+    return limbs, trunk, [(int(i), int(k)) for i, k in zip(*np.nonzero(apart), strict=True)]
 
 
 def _geoms(mj: mujoco.MjModel, bodies: list[int]) -> list[int]:

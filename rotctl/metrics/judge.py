@@ -109,7 +109,8 @@ def judge(
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:
         reason = f"every solver failed on {failures} control steps"
-    common = {"duration": steps * period, "torque_p99_fraction": _torque(log)}
+    torque = found["torque_p99_fraction"] if "torque_p99_fraction" in found else _torque(log)
+    common = {"duration": steps * period, "torque_p99_fraction": torque}
     return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.rotations import Array
+from rotctl.same import kept
 
 ROUND = int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_SPHERE)
 
@@ -46,16 +47,14 @@ class Skeleton:
 
     def capsules(self, geoms: Sequence[int], every: int = 1) -> Capsules:
         """Geoms by their ids, in every so-many-th row; each must be a capsule or a sphere."""
-        mj, along = self._mj, np.zeros(3)
-        rows = len(range(0, self._qpos.shape[1], every))
-        ends = np.zeros((len(geoms), 2, rows, 3))
-        for k, geom in enumerate(geoms):
-            place, turn = (part[:, ::every] for part in self._frame(int(mj.geom_bodyid[geom])))
-            half = mj.geom_size[geom, 1] if mj.geom_type[geom] == ROUND[0] else 0.0
-            mujoco.mju_rotVecQuat(along, np.array([0.0, 0.0, half]), mj.geom_quat[geom])
-            for side, end in enumerate((mj.geom_pos[geom] + along, mj.geom_pos[geom] - along)):
-                ends[k, side] = (place + _rotated(turn, end)).T
-        return Capsules(mj.geom_bodyid[geoms], ends, mj.geom_size[geoms, 0])
+        mj, rows = self._mj, slice(None, None, every)
+        bodies = mj.geom_bodyid[geoms]
+        frames = [self._frame(body) for body in bodies.tolist()]
+        place = np.stack([place[:, None, rows] for place, _ in frames], axis=1)
+        turn = np.stack([turn[:, None, rows] for _, turn in frames], axis=1)
+        moved = place + _rotated(turn, _ends(mj)[:, geoms, :, None])
+        ends = np.ascontiguousarray(moved.transpose(1, 2, 3, 0))
+        return Capsules(bodies, ends, mj.geom_size[geoms, 0])
 
     def _frame(self, body: int) -> tuple[Array, Array]:
         """Origin (3, n) [m] and orientation (4, n) of a body."""
@@ -68,19 +67,30 @@ class Skeleton:
                 self._frames[body] = self._qpos[at : at + 3], self._qpos[at + 3 : at + 7]
             else:
                 above, turn = self._frame(int(mj.body_parentid[body]))
-                place = above + _rotated(turn, mj.body_pos[body])
+                place = above + _rotated(turn, mj.body_pos[body][:, None])
                 for joint in joints:
                     turn = _turned(turn, mj.jnt_axis[joint], self._qpos[mj.jnt_qposadr[joint]])
                 self._frames[body] = place, turn
         return self._frames[body]
 
 
+@kept(most=8)
+def _ends(mj: mujoco.MjModel) -> Array:
+    """Of the middle lines of all geoms in their bodies' frames, (3, ngeom, 2) [m]."""
+    ends, along = np.zeros((3, mj.ngeom, 2)), np.zeros(3)
+    for geom in range(mj.ngeom):
+        half = mj.geom_size[geom, 1] if mj.geom_type[geom] == ROUND[0] else 0.0
+        mujoco.mju_rotVecQuat(along, np.array([0.0, 0.0, half]), mj.geom_quat[geom])
+        ends[:, geom, 0], ends[:, geom, 1] = mj.geom_pos[geom] + along, mj.geom_pos[geom] - along
+    return ends
+
+
 def _rotated(turn: Array, point: Array) -> Array:
-    """A point (3,) turned by unit quaternions (4, n): v + 2 w (u x v) + 2 u x (u x v)."""
-    (w, x, y, z), (a, b, c) = turn, (2.0 * point).tolist()
+    """Points (3, ...) turned by unit quaternions (4, ...): v + 2 w (u x v) + 2 u x (u x v)."""
+    (w, x, y, z), (a, b, c) = turn, 2.0 * point
     p, q, r = y * c - z * b, z * a - x * c, x * b - y * a
     moved = np.array((w * p + y * r - z * q, w * q + z * p - x * r, w * r + x * q - y * p))
-    return np.asarray(moved + point[:, None])
+    return np.asarray(moved + point)
 
 
 def _turned(turn: Array, axis: Array, angle: Array) -> Array:
