@@ -18,6 +18,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.mechanics.model import Model
 from rotctl.native.layout import constant
 from rotctl.rotations import Array
+from rotctl.same import kept
 from rotctl.settings import STRICT, Finite
 
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
@@ -77,6 +78,7 @@ class PosePair:
         return np.asarray(np.minimum(np.maximum(poses, self.low), self.high))
 
 
+@kept(most=8)
 def make_pose_pair(model: Model, poses: Poses, key: str = "behaviour.poses") -> PosePair:
     """Poses by joint name to arrays in motor order.
 

@@ -199,12 +199,14 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
 def _clearance(model: Model, data: mujoco.MjData) -> float:
     """How far the character can be lowered before it touches the ground [m]."""
     mj, ground = model.mj, model.ground
+    geoms = np.flatnonzero(is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0))
+    length = mj.geom_size[geoms, 1] * (mj.geom_type[geoms] == mujoco.mjtGeom.mjGEOM_CAPSULE)
+    half = length[:, None] * data.geom_xmat[geoms, 2::3]
+    ends = np.stack((data.geom_xpos[geoms] + half, data.geom_xpos[geoms] - half), axis=1)
     least = np.inf
-    for geom in np.flatnonzero(is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)):
-        capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
-        half = mj.geom_size[geom, 1] * capsule * data.geom_xmat[geom].reshape(3, 3)[:, 2]
-        for x, y, z in (data.geom_xpos[geom] + half, data.geom_xpos[geom] - half):
+    for radius, both in zip(mj.geom_size[geoms, 0].tolist(), ends.tolist(), strict=True):
+        for x, y, z in both:
             # A sphere on the plane that touches the ground below its centre.
-            upright = ground.normal(x, y)[2]
-            least = min(least, z - ground.height(x, y) - mj.geom_size[geom, 0] / upright)
+            upright = float(ground.normal(x, y)[2])
+            least = min(least, z - ground.height(x, y) - radius / upright)
     return float(least)
