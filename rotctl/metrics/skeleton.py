@@ -6,6 +6,7 @@ simulation.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -32,46 +33,80 @@ class Capsules:
     radius: Array
 
 
+class Hinges(NamedTuple):
+    """One hinge each of some bodies: ids (k,), columns (k,) of `qpos`, axes (3, k, 1)."""
+
+    bodies: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    axes: Array
+
+
+class Level(NamedTuple):
+    """Bodies as far from the root: ids (k,), those of what they hang on, where (3, k, 1) [m].
+
+    Their hinges follow each other: first ones, second ones.
+    """
+
+    bodies: NDArray[np.int64]
+    parents: NDArray[np.int64]
+    offsets: Array
+    hinges: tuple[Hinges, ...]
+
+
 class Skeleton:
-    """A character over the rows of a log; each body is worked out when it is asked for."""
+    """A character over the rows of a log."""
 
     def __init__(self, mj: mujoco.MjModel, qpos: Array) -> None:
         """For `qpos` (n, nq) [m, quaternion, rad] of a model with joints at bodies' origins."""
-        self._mj, self._qpos = mj, np.ascontiguousarray(qpos.T)
-        still = np.repeat([[1.0], [0.0], [0.0], [0.0]], len(qpos), axis=1)
-        self._frames: dict[int, tuple[Array, Array]] = {0: (np.zeros((3, len(qpos))), still)}
+        angles = np.ascontiguousarray(qpos.T)
+        place, turn = np.zeros((3, mj.nbody, len(qpos))), np.zeros((4, mj.nbody, len(qpos)))
+        turn[0] = 1.0
+        free, levels = _tree(mj)
+        for body, at in free:
+            place[:, body], turn[:, body] = angles[at : at + 3], angles[at + 3 : at + 7]
+        for bodies, parents, offsets, hinges in levels:
+            above = turn[:, parents]
+            place[:, bodies], turn[:, bodies] = place[:, parents] + _rotated(above, offsets), above
+            for some, columns, axes in hinges:
+                turn[:, some] = _turned(turn[:, some], axes, angles[columns])
+        self._mj, self._place, self._turn = mj, place, turn
 
     def origin(self, body: int) -> Array:
         """A body's origin (n, 3) [m]."""
-        return self._frame(body)[0].T
+        return self._place[:, body].T
 
     def capsules(self, geoms: Sequence[int], every: int = 1) -> Capsules:
         """Geoms by their ids, in every so-many-th row; each must be a capsule or a sphere."""
-        mj, rows = self._mj, slice(None, None, every)
+        mj = self._mj
         bodies = mj.geom_bodyid[geoms]
-        frames = [self._frame(body) for body in bodies.tolist()]
-        place = np.stack([place[:, None, rows] for place, _ in frames], axis=1)
-        turn = np.stack([turn[:, None, rows] for _, turn in frames], axis=1)
+        place, turn = (part[:, :, None, ::every][:, bodies] for part in (self._place, self._turn))
         moved = place + _rotated(turn, _ends(mj)[:, geoms, :, None])
         ends = np.ascontiguousarray(moved.transpose(1, 2, 3, 0))
         return Capsules(bodies, ends, mj.geom_size[geoms, 0])
 
-    def _frame(self, body: int) -> tuple[Array, Array]:
-        """Origin (3, n) [m] and orientation (4, n) of a body."""
-        if body not in self._frames:
-            mj = self._mj
-            first = int(mj.body_jntadr[body])
-            joints = range(first, first + int(mj.body_jntnum[body]))
-            if joints and mj.jnt_type[first] == mujoco.mjtJoint.mjJNT_FREE:
-                at = int(mj.jnt_qposadr[first])
-                self._frames[body] = self._qpos[at : at + 3], self._qpos[at + 3 : at + 7]
-            else:
-                above, turn = self._frame(int(mj.body_parentid[body]))
-                place = above + _rotated(turn, mj.body_pos[body][:, None])
-                for joint in joints:
-                    turn = _turned(turn, mj.jnt_axis[joint], self._qpos[mj.jnt_qposadr[joint]])
-                self._frames[body] = place, turn
-        return self._frames[body]
+
+@kept(most=8)
+def _tree(mj: mujoco.MjModel) -> tuple[list[tuple[int, int]], list[Level]]:
+    """Bodies that are free, each with its first column of `qpos`; all others, level by level."""
+    first = mj.body_jntadr
+    loose = (first >= 0) & (mj.jnt_type[first] == mujoco.mjtJoint.mjJNT_FREE)
+    free = [(body, int(mj.jnt_qposadr[first[body]])) for body in np.flatnonzero(loose).tolist()]
+    depth = np.zeros(mj.nbody, dtype=int)  # of what hangs on nothing that moves: the world, too
+    for body in range(1, mj.nbody):
+        depth[body] = 0 if loose[body] else depth[mj.body_parentid[body]] + 1
+    levels = []
+    for far in range(1, depth.max() + 1):
+        bodies = np.flatnonzero(depth == far)
+        hinges = []
+        for k in range(mj.body_jntnum[bodies].max()):
+            some = bodies[mj.body_jntnum[bodies] > k]
+            joints = first[some] + k
+            hinges.append(
+                Hinges(some, mj.jnt_qposadr[joints].copy(), mj.jnt_axis[joints].T[:, :, None])
+            )
+        parents, offsets = mj.body_parentid[bodies], mj.body_pos[bodies].T[:, :, None]
+        levels.append(Level(bodies, parents, offsets, tuple(hinges)))
+    return free, levels
 
 
 @kept(most=8)
@@ -94,10 +129,10 @@ def _rotated(turn: Array, point: Array) -> Array:
 
 
 def _turned(turn: Array, axis: Array, angle: Array) -> Array:
-    """Quaternions (4, n), and then a turn by angles (n,) [rad] about an axis (3,) of theirs."""
+    """Quaternions (4, k, n), then turns by angles (k, n) [rad] about axes (3, k, 1) of theirs."""
     (w, x, y, z), half = turn, 0.5 * angle
     d, sine = np.cos(half), np.sin(half)
-    a, b, c = (sine * along for along in axis.tolist())
+    a, b, c = (sine * along for along in axis)
     turned = (
         w * d - x * a - y * b - z * c,
         w * a + x * d + y * c - z * b,
