@@ -120,8 +120,12 @@ def encode_run(
             if array.size:
                 dataset = h5py.h5d.open(opened, name.encode())
                 dataset.write(h5py.h5s.ALL, h5py.h5s.ALL, array)
+        top = file["/"]
         for name, value in {**root, "complete": True}.items():
-            file.attrs[name] = np.uint8(value) if isinstance(value, bool) else value
+            if isinstance(value, str):
+                _write_text(top, name, value)
+            else:
+                top.attrs[name] = np.uint8(value) if isinstance(value, bool) else value
         file.flush()
         content: bytes = opened.get_file_image()
     return content
@@ -168,9 +172,9 @@ _TEXT = h5py.h5t.py_create(h5py.string_dtype("utf-8"), logical=True)
 _SCALAR = h5py.h5s.create(h5py.h5s.SCALAR)
 
 
-def _write_text(dataset: h5py.Dataset, name: str, text: str) -> None:
-    """As `dataset.attrs[name] = text`, in two thirds of its time; a log has over a hundred."""
-    h5py.h5a.create(dataset.id, name.encode(), _TEXT, _SCALAR).write(np.array(text, dtype=object))
+def _write_text(owner: h5py.Dataset | h5py.Group, name: str, text: str) -> None:
+    """As `owner.attrs[name] = text`, in two thirds of its time; a log has over a hundred."""
+    h5py.h5a.create(owner.id, name.encode(), _TEXT, _SCALAR).write(np.array(text, dtype=object))
 
 
 def _storage(dtype: "np.dtype[Any]", shape: tuple[int, ...]) -> dict[str, Any]:
