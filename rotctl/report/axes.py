@@ -20,7 +20,7 @@ def _three(axes: Any, time: Array, values: Array) -> None:
     """In-plane in front, out-of-plane behind."""
     axes.plot(time, values[:, 0], color=ORANGE, label="forward", lw=0.6)
     axes.plot(time, values[:, 2], color=GREEN, label="up", lw=0.6)
-    axes.plot(time, values[:, 1], color=BLUE, label="left, in-plane", lw=1.0)
+    axes.plot(time, values[:, 1], color=BLUE, label="left", lw=1.0)
 
 
 def momentum(axes: Any, log: RunLog, rows: slice, run: Signals) -> None:
@@ -48,8 +48,8 @@ def in_plane(axes: Any, run: Signals) -> None:
 
 def out_of_plane(axes: Any, run: Signals) -> None:
     """Out-of-plane excursion."""
-    axes.plot(run.time, 360.0 * run.turns[:, 0], color=ORANGE, label="forward (tilt)")
-    axes.plot(run.time, 360.0 * run.turns[:, 2], color=GREEN, label="up (heading)")
+    axes.plot(run.time, 360.0 * run.turns[:, 0], color=ORANGE, label="forward")
+    axes.plot(run.time, 360.0 * run.turns[:, 2], color=GREEN, label="up")
     legend(axes)
 
 
@@ -151,6 +151,7 @@ def solver(axes: Any, log: RunLog, rows: slice, time: Array) -> None:
     beside.plot(time, np.where(residual > 0, residual, np.nan), color=ORANGE, lw=0.5)
     axes.plot([], [], color=ORANGE, lw=0.8, label="residual (right)")
     beside.set_yscale("log")
+    beside.minorticks_off()  # whose labels would lie over one another
     beside.grid(visible=False)
     axes.set_ylim(0, max(1.0, axes.get_ylim()[1]))
     legend(axes)

@@ -111,7 +111,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     draw.momentum(axes(0, left, "Angular momentum H", "kg m\u00b2/s"), log, rows, run)
     draw.spin(axes(0, right, "Angular velocity \u03c9", "rev/s"), run)
     draw.in_plane(axes(1, left, "Excursion, in-plane", "rev"), run)
-    draw.out_of_plane(axes(1, right, "Excursion, out-of-plane", "deg"), run)
+    draw.out_of_plane(axes(1, right, "Integral of ω, out-of-plane", "deg"), run)
     linear, angular = linear_rates(log, rows, character.gravity(model)), angular_rates(log, rows)
     for i, axis in enumerate("xyz"):
         third = slice(2 * i, 2 * i + 2)
