@@ -22,7 +22,7 @@ class Picture:
     """What shows one run.
 
     Attributes:
-        role: `median` or `worst`.
+        role: `median`, `worst`, or `least turned` where that one succeeded too.
         run: seed and run id.
         verdict: how it ended.
         replay: address of its page; empty if there is none.
@@ -50,9 +50,11 @@ def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
         put: takes an address and the content of every file.
     """
     found = []
-    for role, run in (("median", row.median), ("worst", row.poorest)):
-        if run is not None:
-            found.append(_picture(role, run, folder, f"{name}-{role}", put))
+    if row.median is not None:
+        found.append(_picture("median", row.median, folder, f"{name}-median", put))
+    if row.poorest is not None:
+        role = "least turned" if row.poorest.outcome.get("success") else "worst"
+        found.append(_picture(role, row.poorest, folder, f"{name}-worst", put))
     return found
 
 
