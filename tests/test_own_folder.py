@@ -187,8 +187,15 @@ def test_runs_are_listed_and_compared(here, cli):
         api.simulate(config)
     code, said, _ = cli("ls")
     assert code == 0
-    assert [line.split()[1:6] for line in said.splitlines()] == [
-        ["forward_roll_1", "seed", str(seed), "0.3", "s"]
+    assert [line.split()[3:9] for line in said.splitlines()] == [
+        [
+            "forward_roll_1",
+            "seed",
+            str(seed),
+            "0.3",
+            "s",
+            f"controller.pose.weight=0.{seed}".rstrip("0"),
+        ]
         for seed in sorted((2000, 2001), key=lambda s: _folder(s))
     ]
     one, other = _folder(2000), _folder(2001)

@@ -81,8 +81,9 @@ def add_ls(commands: Commands) -> None:
     command = commands.add_parser(
         "ls",
         help="the runs in a folder",
-        description="List the runs below a folder, one a line: run id, behaviour, seed, duration "
-        "and how it ended.",
+        description="List the runs below a folder, one a line: run id, when its log was written, "
+        "behaviour, seed, duration, the config values in which it differs from other runs of its "
+        "behaviour, and how it ended.",
     )
     command.add_argument(
         "folder", type=Path, nargs="?", default=Path("runs"), metavar="DIR", help="[%(default)s]"
@@ -92,27 +93,12 @@ def add_ls(commands: Commands) -> None:
 
 def ls(arguments: argparse.Namespace) -> int:
     """List runs."""
-    from rotctl.results.stored_runs import DONE, stored_runs
+    from rotctl.results.lines import lines
+    from rotctl.results.stored_runs import stored_runs
 
     runs, notes = stored_runs(arguments.folder)
-    rows = []
-    for run in runs:
-        outcome = run.outcome
-        verdict = "success" if outcome.get("success") else str(outcome.get("failure_reason", ""))
-        lasted = outcome.get("duration")
-        rows.append(
-            [
-                run.run_id,
-                str(outcome.get("behaviour", "-")),
-                f"seed {outcome.get('seed', '-')}",
-                f"{lasted:.1f} s" if isinstance(lasted, int | float) else "-",
-                verdict if run.status == DONE else f"{run.status}: {run.reason}",
-            ]
-        )
-    wide = [max(len(row[i]) for row in rows) for i in range(4)]
-    for row in rows:
-        cells = [f"{text:{width}}" for text, width in zip(row, wide, strict=False)]
-        print(printable("  ".join([*cells, " ".join(row[4].split())])))
+    for line in lines(runs, arguments.folder):
+        print(printable(line))
     for note in notes:
         print(one_line(note))
     return 0

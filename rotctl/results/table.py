@@ -49,7 +49,7 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
     """Runs that were found, in the order of their keys."""
     configs = {run.run_id: run.config for run in runs if run.config}
     keys = list(dict.fromkeys(["behaviour", *(k for run in runs for k in run.values), "seed"]))
-    keys += [key for key in _differing(configs.values()) if key not in keys]
+    keys += [key for key in differing(configs.values()) if key not in keys]
     if len(keys) > MOST:
         notes = [*notes, f"the configs differ in {len(keys)} keys; {MOST} of them are columns"]
     keys = [*[key for key in keys if key != "seed"][: MOST - 1], "seed"]
@@ -101,7 +101,7 @@ def _missing(runs: Iterable[StoredRun]) -> list[str]:
     return notes
 
 
-def _differing(configs: Iterable[Mapping[str, Any]]) -> list[str]:
+def differing(configs: Iterable[Mapping[str, Any]]) -> list[str]:
     """The keys in which configs differ; within a group, among those of the same choice."""
     distinct = list({id(config): config for config in configs}.values())
     keys: list[str] = []
