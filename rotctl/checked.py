@@ -106,6 +106,9 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
             found = inner
     where = dotted(place)
     if kind == "unexpected_keyword_argument":
+        elsewhere = _kinds_with(shape, way)
+        if elsewhere:
+            return f"{where}: {clip(str(way[-2]))} settings have none; {elsewhere} ones have"
         return unknown_key(where, dotted(place[:-1]), keys(shape, way[:-1]))
     if kind == "missing" and isinstance(found, list | tuple):
         # A list that is too short: pydantic counts the values that are not there.
@@ -154,13 +157,26 @@ def _inner(shape: Any, part: int | str) -> Any:
     return hints.get(str(part))
 
 
+def _kinds_with(shape: type, way: Sequence[int | str]) -> str:
+    """The other kinds of settings that have the key at the end of a way; empty if none has."""
+    union: Any = shape
+    for part in way[:-2]:
+        union = _inner(union, part)
+    members = [each for each in get_args(union) for each in (each, *get_args(each))]
+    told_by = {key for each in members for key, tags in _literals(each) if way[-2] in tags}
+    having = [each for each in members if is_dataclass(each) and way[-1] in keys(each)]
+    tags = {
+        tag for each in having for key, some in _literals(each) if key in told_by for tag in some
+    }
+    return " and ".join(sorted(tags))
+
+
 def _tags(shape: Any) -> set[Any]:
     """What a member of a union may be told by."""
-    if not is_dataclass(shape):
-        return set()
-    return {
-        tag
-        for hint in get_type_hints(shape).values()
-        if get_origin(hint) is Literal
-        for tag in get_args(hint)
-    }
+    return {tag for _, tags in _literals(shape) for tag in tags}
+
+
+def _literals(shape: Any) -> list[tuple[str, tuple[Any, ...]]]:
+    """The keys of settings that have a few words as values, with those."""
+    hints = get_type_hints(shape) if is_dataclass(shape) else {}
+    return [(key, get_args(hint)) for key, hint in hints.items() if get_origin(hint) is Literal]

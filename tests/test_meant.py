@@ -34,6 +34,10 @@ def test_what_is_like_none_of_them_has_no_hint(word):
             "unknown joint 'kneee'; did you mean knee? valid: ",
         ),
         (["run", "behaviour=back_flip", "behaviour.shape=tukc"], "did you mean tuck? valid: tuck"),
+        (
+            ["run", "behaviour=back_flip", "+course=circle"],
+            "behaviour.course: staged settings have none; rolling ones have\n",
+        ),
         (["sweep", "+experiment=tabel1", "--out=x"], "no such experiment; did you mean table1? "),
         (["tune", "clips", "--out=x"], "no such space; did you mean clip? valid: ablation, clip, "),
         (
