@@ -13,8 +13,6 @@ RNG = np.random.default_rng(5)
 PACKAGE = Path(rotctl.__file__).parent
 # Of no run: they draw, count, search, export, import. A clip once imported is the same everywhere.
 NO_PART_OF_A_RUN = {"bench", "export", "report", "results", "sweep", "tune"}
-# Its least squares are scipy's; of what they find a character has five decimals.
-STRAIGHTENED = "adopting/straight.py"
 OF_A_RUN_IN_MOTION = {"__init__", "clip", "pose_pair", "reference", "untrusted"}
 BLAS = {
     *("linalg", "dot", "vdot", "inner", "matmul", "tensordot", "vecdot", "matvec", "vecmat"),
@@ -30,7 +28,6 @@ RUN_ONLY = [
     path
     for path in sorted(PACKAGE.rglob("*.py"))
     if path.relative_to(PACKAGE).parts[0] not in NO_PART_OF_A_RUN
-    and not path.match(STRAIGHTENED)
     and (path.parent.name != "motion" or path.stem in OF_A_RUN_IN_MOTION)
 ]
 

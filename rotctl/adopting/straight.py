@@ -4,9 +4,10 @@ from collections.abc import Mapping
 
 import mujoco
 import numpy as np
-from scipy.optimize import least_squares
 
-from rotctl.rotations import Array
+from rotctl.adopting.squares import least_squares
+from rotctl.linear import product
+from rotctl.rotations import Array, dot, length
 
 HANGS = 0.9  # cosine of a limb's segment with down, from which it is left as it is
 TO_ZERO = 0.03  # [1/rad] pull of straightened joints to where they were
@@ -21,14 +22,14 @@ def straighten(mj: mujoco.MjModel, data: mujoco.MjData, bodies: Mapping[str, int
     def along(upper: int, lower: int | None) -> Array:
         end = _far_end(mj, data, upper) if lower is None else anchor(mj, data, lower)
         whole = end - anchor(mj, data, upper)
-        return np.asarray(whole / max(float(np.linalg.norm(whole)), 1e-9))
+        return np.asarray(whole / max(length(whole), 1e-9))
 
     bent: list[tuple[int, int | None]] = []
     moved: list[int] = []
     for side in ("left", "right"):
         for a, b in pairs:
             upper, lower = bodies[f"{side}_{a}"], bodies.get(f"{side}_{b}")
-            if along(upper, lower) @ down < HANGS:
+            if dot(along(upper, lower), down) < HANGS:
                 bent.append((upper, lower))
                 between = _between(mj, upper, lower)
                 moved += [j for j in range(mj.njnt) if mj.jnt_bodyid[j] in between]
@@ -37,7 +38,6 @@ def straighten(mj: mujoco.MjModel, data: mujoco.MjData, bodies: Mapping[str, int
         limited, ranges = mj.jnt_limited[moved].astype(bool), mj.jnt_range[moved]
         low = np.where(limited, ranges[:, 0], -np.pi)
         high = np.where(limited, ranges[:, 1], np.pi)
-        middle = 0.5 * (low + high)
 
         def missed(angles: Array) -> Array:
             data.qpos[at] = angles
@@ -45,8 +45,7 @@ def straighten(mj: mujoco.MjModel, data: mujoco.MjData, bodies: Mapping[str, int
             found = [TO_ZERO * (angles - mj.qpos0[at])]
             return np.concatenate([*found, *(along(*pair) - down for pair in bent)])
 
-        start = np.clip(mj.qpos0[at], 0.98 * low + 0.02 * middle, 0.98 * high + 0.02 * middle)
-        missed(least_squares(missed, start, bounds=(low, high), xtol=1e-10).x)
+        missed(least_squares(missed, mj.qpos0[at], low, high))
     mujoco.mj_comPos(mj, data)
 
 
@@ -58,9 +57,10 @@ def face_forward(data: mujoco.MjData, bodies: Mapping[str, int]) -> None:
     cosine, sine = y / np.hypot(x, y), x / np.hypot(x, y)
     turn = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
     for places in (data.xpos, data.xipos, data.geom_xpos):
-        places[:] = places @ turn.T
+        places[:] = product(places, turn.T)
     for frames in (data.xmat, data.geom_xmat):
-        frames[:] = (turn @ frames.reshape(-1, 3, 3)).reshape(-1, 9)
+        for frame in frames:
+            frame[:] = product(turn, frame.reshape(3, 3)).ravel()
 
 
 def _between(mj: mujoco.MjModel, upper: int, lower: int | None) -> set[int]:
@@ -77,7 +77,7 @@ def anchor(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> Array:
     if not mj.body_jntnum[body] or mj.jnt_type[mj.body_jntadr[body]] == 0:
         return data.xpos[body].copy()
     joint = int(mj.body_jntadr[body])
-    return data.xpos[body] + data.xmat[body].reshape(3, 3) @ mj.jnt_pos[joint]
+    return np.asarray(data.xpos[body] + product(data.xmat[body].reshape(3, 3), mj.jnt_pos[joint]))
 
 
 def _far_end(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> Array:
@@ -85,4 +85,4 @@ def _far_end(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> Array:
     places = [data.geom_xpos[g] for g in np.flatnonzero(mj.geom_bodyid == body)]
     places += [data.xpos[b] for b in range(1, mj.nbody) if mj.body_parentid[b] == body]
     origin = anchor(mj, data, body)
-    return max(places, key=lambda at: float(np.linalg.norm(at - origin)), default=origin)
+    return max(places, key=lambda at: length(at - origin), default=origin)
