@@ -23,6 +23,7 @@ from rotctl import listing
 from rotctl import run as runs
 from rotctl.config import load as composed
 from rotctl.log import LOG_NAME, RunLog
+from rotctl.override_files import expanded
 from rotctl.schema import Config
 
 if TYPE_CHECKING:
@@ -37,7 +38,8 @@ def load(overrides: Iterable[str] = (), config_dir: str | Path | None = None) ->
     """Compose and check a config.
 
     Args:
-        overrides: in Hydra's syntax, such as `seed=3` or `terrain=stairs_up`; none: Forward Roll 1.
+        overrides: in Hydra's syntax, such as `seed=3` or `terrain=stairs_up`, and `@FILE.yaml`
+            of such; none: Forward Roll 1.
         config_dir: folder of your own behaviours, characters and the like; without, a `./conf`
             that has a `rotctl.yaml`.
 
@@ -45,7 +47,7 @@ def load(overrides: Iterable[str] = (), config_dir: str | Path | None = None) ->
         InputError: one line that names the bad value and the valid ones.
     """
     with listing.own(Path(config_dir) if config_dir else None):
-        return composed(list(overrides))
+        return composed(expanded(overrides))
 
 
 def simulate(
@@ -95,7 +97,7 @@ def sweep(
     from rotctl.sweep.points import points
     from rotctl.sweep.workers import make_engine
 
-    given, folder = list(overrides), Path(out)
+    given, folder = expanded(overrides), Path(out)
     with listing.own(Path(config_dir) if config_dir else None):
         wanted = planned(points(experiments.matrix(given)))
         with closing(make_engine(jobs, None)) as engine, locked(folder):

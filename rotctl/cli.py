@@ -28,8 +28,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)
     from rotctl.listing import own  # reads YAML: who asks for help need not wait for it
+    from rotctl.override_files import blamed, expanded
 
     try:
+        if "overrides" in arguments:
+            arguments.overrides = expanded(arguments.overrides)
         gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
         with _terminated_like_interrupted(), own(arguments.config_dir):
             code = int(arguments.command(arguments))
@@ -37,7 +40,8 @@ def main(argv: Sequence[str] | None = None) -> int:
                 sys.stdout.flush()
             return code
     except RotctlError as error:
-        print(f"rotctl: {one_line(str(error))}", file=sys.stderr)
+        complaint = blamed(getattr(arguments, "overrides", ()), str(error))
+        print(f"rotctl: {one_line(complaint)}", file=sys.stderr)
         return error.exit_code
     except KeyboardInterrupt:
         print(f"rotctl: interrupted; {arguments.interrupted}", file=sys.stderr)

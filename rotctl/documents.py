@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 import yaml
 
@@ -88,6 +88,32 @@ def read_yaml(path: Path, most: int = MOST_VALUES, *, linked: bool) -> Any:
         InputError: one line that names the file and the line in it.
     """
     return from_yaml(str(path), files.text(path, LARGEST, linked=linked), most)
+
+
+Way: TypeAlias = tuple[str | int, ...]  # keys and places that lead to a value
+
+
+def read_with_lines(path: Path) -> tuple[Any, dict[Way, int]]:
+    """The data of a YAML file, and the line of each key and of each element of a list.
+
+    Raises:
+        InputError: as for `read_yaml`.
+    """
+    text = files.text(path, LARGEST, linked=True)
+    data = from_yaml(str(path), text)
+    lines: dict[Way, int] = {}
+    waiting: list[tuple[Way, Any]] = [((), yaml.compose(text, _Loader))]
+    while waiting:  # of an alias the lines are its anchor's
+        way, node = waiting.pop()
+        if isinstance(node, yaml.MappingNode):
+            for key, value in node.value:
+                lines[(*way, key.value)] = key.start_mark.line + 1
+                waiting.append(((*way, key.value), value))
+        elif isinstance(node, yaml.SequenceNode):
+            for k, value in enumerate(node.value):
+                lines[(*way, k)] = value.start_mark.line + 1
+                waiting.append(((*way, k), value))
+    return data, lines
 
 
 def from_yaml(where: str, text: str, most: int = MOST_VALUES) -> Any:

@@ -12,7 +12,10 @@ LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
 # Where a command is added; argparse has no public name for it.
 Commands: TypeAlias = "argparse._SubParsersAction[Any]"
 
-OVERRIDES_HELP = "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show)"
+OVERRIDES_HELP = (
+    "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show), and @FILE.yaml "
+    "of such"
+)
 
 
 def folder_name(text: str) -> Path:
