@@ -8,8 +8,9 @@ import os
 from dataclasses import field
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl import plain
@@ -30,12 +31,15 @@ class OwnBody:
         file: MJCF, beside the file that names it, or from the working folder on a command line.
         roles: which body is what, as `left_hip: leg_1`; see `rotctl.motion.naming.ROLES`.
         meshes: `fitted` takes capsules in their place, `none` leaves them out.
+        proxies: which of its shapes touch, by their names, `class:NAME` or `group:N`; `*` stands
+            for anything. A body of which none is named keeps what it has.
     """
 
     kind: Literal["mjcf"]
     file: str
     roles: dict[str, str] = field(default_factory=dict)
     meshes: Literal["fitted", "none"] = "fitted"
+    proxies: Annotated[tuple[str, ...], Field(max_length=1000)] = ()
 
 
 class Named(NamedTuple):
@@ -102,7 +106,8 @@ def converted(model: Named) -> dict[str, Any]:
     except InputError as error:
         raise InputError(f"{GROUP}: {error}") from None
     path = model.folder / body.file
-    data = _adopted(path, _stamp(path), tuple(body.roles.items()), body.meshes == "fitted")
+    roles, fitted = tuple(body.roles.items()), body.meshes == "fitted"
+    data = _adopted(path, _stamp(path), roles, fitted, body.proxies)
     for parts, value in over:
         if plain.find(data, parts) is plain.NOTHING:
             valid = [*OwnBody.__dataclass_fields__, *data]
@@ -113,15 +118,20 @@ def converted(model: Named) -> dict[str, Any]:
 
 @lru_cache(maxsize=8)
 def _adopted(
-    path: Path, stamp: tuple[int, int], roles: tuple[tuple[str, str], ...], meshes: bool
+    path: Path,
+    stamp: tuple[int, int],
+    roles: tuple[tuple[str, str], ...],
+    meshes: bool,
+    proxies: tuple[str, ...],
 ) -> dict[str, Any]:
     """As a file was at some time."""
     from rotctl.adopting import adopt
 
     try:
-        found = adopt(path, path.stem, dict(roles), meshes=meshes)
+        found = adopt(path, path.stem, dict(roles), meshes=meshes, proxies=proxies)
     except InputError as error:
-        raise InputError(str(error).replace("--map ", f"+{GROUP}.roles.")) from None
+        said = str(error).replace("--map ", f"+{GROUP}.roles.")
+        raise InputError(said.replace("--proxies ", f"{GROUP}.proxies=")) from None
     return {**found.character, "description": "\n".join([path.name, *found.notes])}
 
 

@@ -129,7 +129,7 @@ def test_what_makes_none_is_told(overrides, expected):
 def test_an_unknown_key_is_told():
     assert complaint(INLINE, "character.hight=2").startswith(
         "unknown key 'hight'; did you mean height? valid keys under character: "
-        "kind, file, roles, meshes, name, height,"
+        "kind, file, roles, meshes, proxies, name, height,"
     )
 
 
@@ -153,3 +153,36 @@ def test_a_body_without_a_neck_rolls_over_its_head(here):
     assert "neck_y" in config.character.absent
     runs = [make(load([*roll, f"seed={seed}"])).summary for seed in (2000, 2001, 2002)]
     assert sum(run["revolutions"] > 1.5 for run in runs) >= 2
+
+
+COLLARED = text().replace(
+    '<geom type="sphere" size="0.1" pos="0 0 0.1" mass="4"/>',
+    '<geom name="skull" type="sphere" size="0.1" pos="0 0 0.1" mass="4"/>'
+    '<geom name="helmet" class="shell" type="sphere" size="0.12" pos="0 0 0.1" mass="0"/>',
+).replace("<worldbody>", '<default><default class="shell"><geom group="3" contype="0" '
+          'conaffinity="0"/></default></default><worldbody>')  # fmt: skip
+
+
+@pytest.mark.parametrize("proxy", ["helmet", "class:shell", "group:3", "hel*"])
+def test_the_shapes_that_touch_may_be_named(here, proxy):
+    (here / "robot.xml").write_text(COLLARED)
+
+    def head(*more):
+        model = build(load([INLINE, *more])).model.mj
+        return sorted(model.geom_size[model.geom_bodyid == model.body("head").id, 0])
+
+    assert head() == [0.1]
+    assert head(f"character.proxies=['{proxy}']") == [0.12]
+    character = load([INLINE, f"character.proxies=['{proxy}']"]).character
+    assert "1 shapes that are named touch; as in the file: torso, " in character.description
+    (skull,) = (b for b in character.bodies if b.name == "head")
+    assert [geom.mass > 0 for geom in skull.geoms] == [True, False]  # the other is looked at
+
+
+def test_a_proxy_that_there_is_not_is_told(here, capsys):
+    (here / "robot.xml").write_text(COLLARED)
+    valid = "no such shape; its shapes: class:main, class:shell, group:0, group:3, helmet, skull"
+    said = complaint(INLINE, "character.proxies=[skul]")
+    assert said == f"robot.xml: character.proxies=skul: {valid}"
+    assert main(["inspect-model", "robot.xml", "--proxies", "group:4"]) == 2
+    assert capsys.readouterr().err == f"rotctl: robot.xml: --proxies group:4: {valid}\n"

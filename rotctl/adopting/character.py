@@ -60,7 +60,12 @@ class Adopted:
 
 
 def adopt(
-    path: Path, name: str, given: Mapping[str, str] | None = None, *, meshes: bool = True
+    path: Path,
+    name: str,
+    given: Mapping[str, str] | None = None,
+    *,
+    meshes: bool = True,
+    proxies: tuple[str, ...] = (),
 ) -> Adopted:
     """Read a humanoid of hinges.
 
@@ -68,11 +73,13 @@ def adopt(
         name: of the character.
         given: roles that the user has named, see `rotctl.motion.naming.find_roles`.
         meshes: whether capsules stand for them; without, they are left out.
+        proxies: which of the file's shapes touch, by `rotctl.adopting.proxies`; none are named by
+            default, and all do that collide in the file.
 
     Raises:
         InputError: it is none.
     """
-    mj, notes = solid(path, meshes=meshes)
+    mj, notes = solid(path, meshes=meshes, proxies=proxies)
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
     parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
                for b in range(1, mj.nbody)}  # fmt: skip

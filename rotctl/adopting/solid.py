@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import mujoco
 
 from rotctl.adopting.meshes import boxed
+from rotctl.adopting.proxies import only_these_touch
 from rotctl.mechanics.foreign import BONES, compiled, forget_meshes, is_mesh, read_mjcf
 
 _MOTORS = ("actuator", "motor", "general", "position", "velocity")
@@ -14,17 +15,20 @@ _FILES = ("material", "hfield", "fitscale")  # of a geom, what needs more than m
 _FEATHER = {"pos": "0 0 0", "mass": "0.001", "diaginertia": "1e-6 1e-6 1e-6"}
 
 
-def solid(path: Path, *, meshes: bool) -> tuple[mujoco.MjModel, list[str]]:
+def solid(
+    path: Path, *, meshes: bool, proxies: tuple[str, ...] = ()
+) -> tuple[mujoco.MjModel, list[str]]:
     """Bodies, joints, motors and shapes with their masses.
 
     Args:
         meshes: whether boxes stand for them; without, they are left out.
+        proxies: which shapes touch, see `rotctl.adopting.proxies`.
 
     Returns:
         The model, and notes on what was left out.
 
     Raises:
-        InputError: it is no model with hinges on a free root.
+        InputError: it is no model with hinges on a free root, or has no such proxies.
     """
     root = read_mjcf(path)
     notes = boxed(path, root) if meshes else []
@@ -32,7 +36,10 @@ def solid(path: Path, *, meshes: bool) -> tuple[mujoco.MjModel, list[str]]:
     missing = _keep_shapes(root, known if meshes else set())
     if missing:
         notes.append(f"{missing} shapes that are meshes are left out")
-    return compiled(path, root), notes
+    mj = compiled(path, root)
+    if proxies:
+        notes += only_these_touch(path, root, mj, proxies)
+    return mj, notes
 
 
 def _keep_shapes(root: ElementTree.Element, known: set[str]) -> int:

@@ -52,6 +52,14 @@ def add_inspect_model(commands: Commands) -> None:
         metavar="ROLE=NAME",
         help="which body is what, as left_hip=leg_1, where its name does not say",
     )
+    command.add_argument(
+        "--proxies",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="which of its shapes touch: a name, class:NAME or group:N, where * stands for "
+        "anything; all that collide in the file by default",
+    )
     command.set_defaults(command=inspect_model, interrupted="an unfinished file is not written")
 
 
@@ -66,7 +74,8 @@ def inspect_model(arguments: argparse.Namespace) -> int:
     out = arguments.out
     if out is not None:
         files.require_ending(out, ".yaml")
-    found = adopt(arguments.file, (out or arguments.file).stem, dict(arguments.map))
+    name, roles = (out or arguments.file).stem, dict(arguments.map)
+    found = adopt(arguments.file, name, roles, proxies=tuple(arguments.proxies))
     print(printable(adopted(found)))
     if out is not None:
         head = f"# {arguments.file.name} as rotctl inspect-model takes it.\n"
