@@ -15,7 +15,8 @@ from rotctl.report.title import plain
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
-    from rotctl.report.scene import Camera, Scene
+    from rotctl.report.camera import Camera
+    from rotctl.report.scene import Scene
 
 FORCE_SCALE = 0.45  # [m] length of an arrow as large as an adult's weight
 MAX_FORCE = 5.0  # [body weights] longer arrows are cut

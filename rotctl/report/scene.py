@@ -5,91 +5,28 @@ It is seen from the side of its way; who lies across it, as in a log roll, from 
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from math import radians, tan
+from math import tan
 from typing import Any
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.report import character, gl, shapes
+from rotctl.report import character, gl, light, shapes
+from rotctl.report.camera import ABOVE, AHEAD, FIELD_OF_VIEW, FLAT, LONG, SIDE, Camera, View
 from rotctl.rotations import Array
 
 Pixels = NDArray[np.uint8]
 
-FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
 MARGIN = 1.25  # of the picture around the character
 FALL = 5.0  # [m] of heights over the ground, at an adult's size: who jumps stays below
 AROUND = 1.6  # half of a picture of a fall, as a multiple of half the body's height
 LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked adult from filling the picture
 ADULT_WEIGHT = 686.7  # [N] of 70 kg, at which other sizes here are as written
 GROUND_LINE = 0.9  # how far below the middle the ground is, in half heights
-SKY_TOP = (0.655, 0.780, 0.900)
-SKY_LOW = (0.945, 0.962, 0.975)
 DISC = 0.17  # [m] radius of the disc that stands for a shadow, at the ground
 DISC_GROWTH = 0.12  # [m] for each metre above
-SUN = (0.25, 0.45, -1.0)  # direction of its light
-_FAR = 60.0  # [m] where the ground has faded into the sky
 _CHARACTER, _WORLD, _LOOSE = 0, 1, 2  # geom groups, all drawn
-
-
-@dataclass(frozen=True)
-class View:
-    """A direction to look in.
-
-    Attributes:
-        azimuth: of the horizontal direction, from +x to the left [rad].
-        elevation: above the horizon [rad].
-    """
-
-    azimuth: float
-    elevation: float
-
-    @property
-    def axes(self) -> Array:
-        """Rows are the picture's right, its up and forward into it (3, 3), world."""
-        ca, sa = np.cos(self.azimuth), np.sin(self.azimuth)
-        ce, se = np.cos(self.elevation), np.sin(self.elevation)
-        return np.array([[sa, -ca, 0.0], [-ca * se, -sa * se, ce], [ca * ce, sa * ce, se]])
-
-
-SIDE = View(radians(90.0), radians(-7.0))  # along +y, so that +x is to the right; a little down
-AHEAD = View(radians(150.0), radians(-16.0))  # from ahead and above, so that a long body is seen
-ABOVE = View(radians(150.0), radians(-32.0))  # so that it is seen which way a lying body faces
-LONG = 1.5  # times as wide across the way as along it, and a body is seen from ahead
-FLAT = 0.5  # times as high as long, and it lies
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A camera that follows the character.
-
-    Attributes:
-        view: the direction it looks in.
-        target: (3,) the point in the middle of the picture [m].
-        distance: from there [m].
-        width, height: of the picture in pixels.
-    """
-
-    view: View
-    target: Array
-    distance: float
-    width: int
-    height: int
-
-    def pixels(self, points: Array) -> Array:
-        """Where world points (..., 3) are in the picture (..., 2): x to the right, y down."""
-        right, up, forward = self.view.axes
-        offset = points - self.target
-        scale = 0.5 * self.height / tan(0.5 * FIELD_OF_VIEW) / (offset @ forward + self.distance)
-        return np.stack(
-            [
-                0.5 * self.width + scale * (offset @ right),
-                0.5 * self.height - scale * (offset @ up),
-            ],
-            axis=-1,
-        )
 
 
 class Scene:
@@ -107,7 +44,7 @@ class Scene:
         self._view_in = SIDE
         self.heading = 0.0  # of the way, from +x towards +y [rad]
         self.beside = 0.0  # [m] half the character's width across the way
-        _light(model, width, height, shadows)
+        light.set_up(model, width, height, shadows)
         _shade_left(model)
         model.geom_group[:] = np.where(self._limbs, _CHARACTER, _LOOSE)
         model.geom_group[model.geom_bodyid == 0] = _WORLD
@@ -118,7 +55,7 @@ class Scene:
         self._view.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option = mujoco.MjvOption()
         self._option.sitegroup[:] = 0
-        self._sky = _gradient(SIDE, width, height)
+        self._sky = light.sky(SIDE, width, height)
         self._drawing: Any = None
 
     def fit(self, states: Array, heading: float = 0.0) -> None:
@@ -143,7 +80,7 @@ class Scene:
         lies = height < FLAT * halves.max(axis=1).mean()
         chosen = ABOVE if lies else AHEAD if across > LONG * along else SIDE
         self._view_in = View(chosen.azimuth + heading, chosen.elevation)
-        self._sky = _gradient(self._view_in, self.width, self.height)
+        self._sky = light.sky(self._view_in, self.width, self.height)
         self.beside = float((halves @ turn[1]).max())
         right, up, into = np.abs(self._view_in.axes)
         wide = float((halves @ right[:2]).max())
@@ -155,7 +92,7 @@ class Scene:
         if self._falls:  # the camera goes down with it, and sees little more than it
             tall = 2.0 * AROUND * float(reach.max())
         half = max(0.5 * tall, wide * self.height / self.width, least_half)
-        self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * _FAR)
+        self._distance = min(MARGIN * half / tan(0.5 * FIELD_OF_VIEW), 0.5 * light.FAR)
         self._centre = low + GROUND_LINE * half
 
     def draw(self, state: Array) -> tuple[Pixels, Camera]:
@@ -170,7 +107,7 @@ class Scene:
         mujoco.mjv_updateScene(
             self.model, self._data, self._option, None, camera, everything, self._view
         )
-        self._add_sun(target)
+        light.add_sun(self._view, target)
         if not self.shadows:
             self._add_discs()
         frame = mujoco.MjrRect(0, 0, self.width, self.height)
@@ -247,16 +184,6 @@ class Scene:
             )
             self._view.ngeom += 1
 
-    def _add_sun(self, target: Array) -> None:
-        direction = np.array(SUN) / np.linalg.norm(SUN)
-        self._view.nlight = 2  # the first is the headlight; the model's own are not for pictures
-        sun = self._view.lights[1]
-        sun.type = mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
-        sun.headlight, sun.castshadow, sun.texid = 0, 1, -1
-        sun.pos, sun.dir = target - 5.0 * direction, direction
-        sun.ambient, sun.diffuse, sun.specular = [0.0] * 3, [0.62, 0.60, 0.56], [0.12] * 3
-        sun.attenuation = [1.0, 0.0, 0.0]
-
 
 @contextmanager
 def opened(
@@ -282,35 +209,5 @@ def opened(
             drawing.free()
 
 
-def _light(model: mujoco.MjModel, width: int, height: int, fine: bool) -> None:
-    """Set every visual option that matters here: a log's model has its own, or a stranger's."""
-    visual = model.vis
-    visual.global_.offwidth, visual.global_.offheight = width, height
-    visual.global_.fovy = np.degrees(FIELD_OF_VIEW)
-    visual.global_.orthographic = 0
-    quality = visual.quality
-    quality.offsamples = 0  # we draw larger and scale down: much faster in software
-    quality.shadowsize = 2048
-    quality.numslices, quality.numstacks = (32, 16) if fine else (20, 10)
-    quality.numquads = 4
-    model.stat.extent = 1.0  # the lengths below are in metres
-    visual.map.znear, visual.map.zfar = 0.5, 4 * _FAR
-    visual.map.fogstart, visual.map.fogend = 5.0, 0.5 * _FAR
-    visual.map.shadowclip, visual.map.shadowscale = 3.0, 0.8
-    visual.rgba.fog = [*SKY_LOW, 1.0]
-    visual.headlight.active = 1
-    visual.headlight.ambient = [0.42, 0.43, 0.45]
-    visual.headlight.diffuse = [0.22, 0.22, 0.22]
-    visual.headlight.specular = [0.0, 0.0, 0.0]
-
-
 def _shade_left(model: mujoco.MjModel) -> None:
     model.geom_rgba[shapes.left_geoms(model), :3] *= shapes.LEFT_SHADE
-
-
-def _gradient(view: View, width: int, height: int) -> Pixels:
-    """The sky: blue above, as pale at the horizon as the ground fades to."""
-    horizon = max(0.5 - 0.5 * tan(-view.elevation) / tan(0.5 * FIELD_OF_VIEW), 1e-3)
-    down = np.clip(np.linspace(0.0, 1.0 / horizon, height), 0.0, 1.0)[:, None, None]
-    sky = (1.0 - down) * np.array(SKY_TOP) + down * np.array(SKY_LOW)
-    return np.broadcast_to(np.uint8(np.round(255.0 * sky)), (height, width, 3))
