@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
-from rotctl.metrics.finish import FinishCriteria, judge
+from rotctl.config import load
+from rotctl.metrics.finish import FinishCriteria, judge, upright
 from rotctl.metrics.standing import StandingCriteria
+from rotctl.scenario import build
 
 ASKED = {
     "angular_velocity_commanded": 0.5,
@@ -13,7 +15,7 @@ ASKED = {
     "finish_commanded": 8.0,
 }
 STAND = StandingCriteria("test", "landing", ("foot_l",), rest=2.0, height=0.8, lean=20.0, speed=0.3)
-FINISH = FinishCriteria(name="test", kind="finish", roll=CRITERIA, stand=STAND, height=0.85)
+FINISH = FinishCriteria(name="test", kind="finish", roll=CRITERIA, stand=STAND, height=0.86)
 STEPS, TOLD, STANDS = 960, 480, 600  # rows: told to end at 8 s, begins to stand up at 10 s
 
 
@@ -43,7 +45,7 @@ def log_of(height=0.95, stands=STANDS, turns=None, lean=0.0, speed=0.0, touched=
 
 
 def test_a_roll_that_stands_up():
-    columns, reason = judge(log_of(), FINISH, ASKED, PERIOD)
+    columns, reason = judge(log_of(), FINISH, ASKED, PERIOD, 0.99)
     assert reason == ""
     assert columns["revolutions"] == pytest.approx(4.0, abs=0.02), "until it is told"
     assert columns["duration"] == pytest.approx(16.0)
@@ -68,14 +70,32 @@ def test_a_roll_that_stands_up():
     ],
 )
 def test_what_it_does_instead(changes, said):
-    assert judge(log_of(**changes), FINISH, ASKED, PERIOD)[1] == said
+    assert judge(log_of(**changes), FINISH, ASKED, PERIOD, 0.99)[1] == said
 
 
 def test_what_never_began_has_no_numbers():
     empty = {
         name: rows if name.startswith("model/") else rows[:0] for name, rows in log_of().items()
     }
-    columns, reason = judge(empty, FINISH, ASKED, PERIOD)
+    columns, reason = judge(empty, FINISH, ASKED, PERIOD, 0.99)
     assert reason
     assert np.isnan(columns["stands_from"])
     assert np.isnan(columns["stands_at"])
+
+
+@pytest.mark.parametrize(
+    ("height", "upright", "stands"),
+    [(0.65, 0.68, True), (0.57, 0.68, False), (0.86, 1.13, False), (0.57, np.nan, True)],
+)
+def test_how_high_it_stands_is_judged_by_its_size(height, upright, stands):
+    reason = judge(log_of(height=height), FINISH, ASKED, PERIOD, upright)[1]
+    assert reason == ("" if stands else f"stands {height:.2f} m high")
+
+
+def test_a_body_stands_as_high_as_it_is_tall():
+    child, adult = (
+        upright(build(load(overrides)).model.mj)
+        for overrides in (["character.height=1.2", "character.mass=23"], [])
+    )
+    assert adult == pytest.approx(0.986, abs=1e-3)
+    assert child == pytest.approx(adult * 1.2 / 1.75, rel=1e-6)

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any, Literal
 
+import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
@@ -12,7 +13,10 @@ from rotctl.metrics import rolling, standing
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
+from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
+
+ROOT = 1  # the character's first body
 
 COLUMNS = (
     Column("finish_commanded", "Told to end on its feet", "s"),
@@ -30,7 +34,8 @@ class FinishCriteria:
     Attributes:
         roll: of what is rolled before it is told to end.
         stand: of its rest on the feet in the end.
-        height: least of the centre of mass above the ground then [m].
+        height: least of the centre of mass above the ground then, a share of where it is in the
+            body that stands upright, all its angles zero [-].
     """
 
     name: str
@@ -69,14 +74,28 @@ def begins(log: Arrays) -> int:
     return int(np.argmax(ends)) if ends.any() else len(ends)
 
 
+@kept(most=8)
+def upright(mj: mujoco.MjModel) -> float:
+    """Height of the centre of mass where a character stands with all its angles zero [m]."""
+    data = mujoco.MjData(mj)
+    mujoco.mj_kinematics(mj, data)
+    mujoco.mj_comPos(mj, data)
+    return float(data.subtree_com[ROOT, 2])
+
+
 def judge(
-    log: Arrays, criteria: FinishCriteria, commanded: Mapping[str, float], period: float
+    log: Arrays,
+    criteria: FinishCriteria,
+    commanded: Mapping[str, float],
+    period: float,
+    upright: float,
 ) -> tuple[dict[str, Any], str]:
     """Columns of a run, and why it is no success; empty if it is one.
 
     Args:
         commanded: what was asked for; see `RollingSettings.commanded`.
         period: of the control [s].
+        upright: see the function of that name [m]; NaN where nobody knows, and any height will do.
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
     part = rolled(log, commanded["finish_commanded"])
@@ -92,7 +111,7 @@ def judge(
         rolling.failure_reason(roll, criteria.roll, roll.duration)
         or ("never stood up" if row == steps else "")
         or standing.failure(stood, settings, (steps - rest) * period)
-        or ("" if height > criteria.height else f"stands {height:.2f} m high")
+        or (f"stands {height:.2f} m high" if height <= criteria.height * upright else "")
     )
     columns = asdict(roll) | {"duration": steps * period}
     del columns["stalled_at"]  # of people's interest in a reason alone

@@ -72,7 +72,8 @@ def judge(
         commanded: columns that tell what was asked for.
         period: of the control [s].
         wanted: how long the run was to be [s].
-        mj: what was simulated; without it nobody sees what a roll looks like.
+        mj: what was simulated; without it nobody sees what a roll looks like, nor how high it
+            stands in the end for its size.
     """
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
@@ -80,7 +81,8 @@ def judge(
     if isinstance(criteria, RollingCriteria | FinishCriteria):
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
-            found, reason = finish.judge(log, criteria, commanded, period)
+            upright = math.nan if mj is None else finish.upright(mj)
+            found, reason = finish.judge(log, criteria, commanded, period, upright)
             rolling_log = finish.rolled(log, commanded["finish_commanded"])
             settle = criteria.roll.settle
         else:
