@@ -15,6 +15,7 @@ EPILOG = """\
 examples:
   rotctl run                                      Forward Roll 1, 20 s, into runs/<run id>/
   rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
+  rotctl run behaviour=back_flip duration=6       a flip; rotctl list behaviour has the others
   rotctl run controller.pose.weight=0.5
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl judge sweeps/a criteria.stall_time=2     verdicts by other criteria, nothing simulated
@@ -107,7 +108,8 @@ def _instead_of(text: str, options: list[str], takes_overrides: bool) -> str:
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="rotctl",
-        description="Physics-based rotational character control: a simulated human that rolls.",
+        description="Physics-based rotational character control: a simulated human that rolls, "
+        "turns over, flips and dives.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
