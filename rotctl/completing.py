@@ -74,7 +74,7 @@ def _in_command(
     if begun.startswith("-"):
         return [text for a in command._actions for text in a.option_strings]
     given = [w for w in before[before.index(name) + 1 :] if "=" not in w and not w.startswith("-")]
-    if name == "new" and not given:
+    if name in ("new", "list") and not given:
         return [*listing.groups(), "motion", "tune", listing.EXPERIMENTS]
     if name == "tune" and not given:
         return listing.named_files("tune")

@@ -153,7 +153,10 @@ def test_overrides_and_options_may_be_mixed(cli, made):
          "--force?); see rotctl run --help"),
         ([*RUN, "--forc"], "rotctl run: unrecognized arguments: --forc (did you mean "
          "--force?); see rotctl run --help"),
-        (["list", "x"], "rotctl list: unrecognized arguments: x; see rotctl list --help"),
+        (["list", "x", "y"], "rotctl list: unrecognized arguments: y; see rotctl list --help"),
+        (["list", "terain"], "rotctl: \"terain\": no such group; did you mean terrain? valid: "
+         "behaviour, character, controller, course, criteria, disturbance, excursion, finish, "
+         "physics, plant, reference, start, terrain, motion, tune, experiments"),
         ([], "rotctl: the following arguments are required: COMMAND; see rotctl --help"),
         (["inspect"], "rotctl inspect: the following arguments are required: RUN.h5; "
          "see rotctl inspect --help"),
@@ -359,6 +362,13 @@ def test_list_has_every_group_and_choice_with_its_description(cli):
     for group in ("character", "controller", "physics", "start", "terrain"):
         assert group in lines
     assert all(line.strip().count("  ") for line in lines if line.startswith("  "))
+
+
+def test_one_group_is_listed_alone(cli):
+    for group in ("start", "experiments"):
+        lines = cli("list", group)[1].splitlines()
+        assert lines[0].split()[0] == group
+        assert all(line.startswith("  ") for line in lines[1:-2])
 
 
 def test_show_prints_the_config_as_yaml(cli):

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -128,34 +129,48 @@ def add_list(commands: Commands) -> None:
     command = commands.add_parser(
         "list",
         help="config groups and their choices",
-        description="List the config groups and the choices of each. Choose with GROUP=CHOICE, "
-        "as in: rotctl run start=rest",
+        description="List the config groups and the choices of each, or those of one group. Choose "
+        "with GROUP=CHOICE, as in: rotctl run start=rest",
     )
+    command.add_argument("group", nargs="?", metavar="GROUP", help="such as behaviour [all]")
     command.set_defaults(command=list_choices)
 
 
 def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
-    from rotctl.listing import described, groups, is_own, named_files
+    from rotctl.checked import brief
+    from rotctl.listing import EXPERIMENTS, described, groups
+    from rotctl.meant import instead
 
-    others = {
-        "motion (behaviour.reference.clip=NAME)": "motion",
-        "tune (rotctl tune NAME)": "tune",
-        "experiments (rotctl sweep +experiment=NAME)": "experiments",
+    titles = {
+        "course": "course (+course=NAME)",
+        "finish": "finish (+finish=NAME)",
+        "motion": "motion (behaviour.reference.clip=NAME)",
+        "tune": "tune (rotctl tune NAME)",
+        EXPERIMENTS: "experiments (rotctl sweep +experiment=NAME)",
     }
-    listed = {group: (group, choices) for group, choices in groups().items()}
-    listed |= {title: (folder, described(folder)) for title, folder in others.items()}
-    for title, (folder, choices) in listed.items():
-        if not choices:
-            continue
-        print(title)
-        width = max(map(len, choices))
-        places = named_files(folder)
-        for choice, description in choices.items():
-            mine = f"  [yours: {places[choice]}]" if is_own(places[choice]) else ""
-            print(f"  {choice:{width}}  {description}{mine}".rstrip())
+    listed = groups() | {name: described(name) for name in titles}
+    if arguments.group is not None:
+        if arguments.group not in listed:
+            near = instead(arguments.group, list(listed))
+            raise InputError(f"{brief(arguments.group)}: no such group; {near}")
+        listed = {arguments.group: listed[arguments.group]}
+    for folder, choices in listed.items():
+        if choices:
+            print(titles.get(folder, folder))
+            _print_choices(folder, choices)
     print("\nchoose with GROUP=CHOICE, change a value with KEY=VALUE; see: rotctl show")
     return 0
+
+
+def _print_choices(folder: str, choices: Mapping[str, str]) -> None:
+    from rotctl.listing import is_own, named_files
+
+    width = max(map(len, choices))
+    places = named_files(folder)
+    for choice, description in choices.items():
+        mine = f"  [yours: {places[choice]}]" if is_own(places[choice]) else ""
+        print(f"  {choice:{width}}  {description}{mine}".rstrip())
 
 
 def add_show(commands: Commands) -> None:
