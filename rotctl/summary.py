@@ -50,7 +50,8 @@ def _judged(
 ) -> Summary:
     period = 1.0 / config.controller.rate
     commanded, wanted = config.behaviour.commanded, config.duration
-    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj)
+    halts = config.behaviour.halts
+    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj, halts)
     columns = judgement.columns
     reason = ending or judgement.reason
     row = {

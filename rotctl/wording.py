@@ -10,6 +10,10 @@ if TYPE_CHECKING:
     from rotctl.verify import Repetition
 
 
+STILL = 0.05  # [rev, rev/s] less is no rolling
+AWAY = 0.6  # [-] of a command: who is so far off it does not follow it; Table 1's rows are within
+
+
 def one_line(text: str) -> str:
     """The text on one line that a terminal can show."""
     return printable(" ".join(text.split()))
@@ -39,7 +43,7 @@ def readable(summary: dict[str, Any]) -> str:
     if summary.get("criteria", "rolling") in ("rolling", "finish"):
         measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
-            f"{number('angular_velocity_mean')} rev/s ({_asked(summary, 'angular_velocity')})",
+            f"{_pace(summary)} ({_asked(summary, 'angular_velocity')})",
             f"  speed        {number('speed_mean')} m/s ({_asked(summary, 'speed')})",
             f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
             f"drift {number('lateral_drift')} m",
@@ -68,13 +72,29 @@ def readable(summary: dict[str, Any]) -> str:
     )
 
 
+def _pace(summary: dict[str, Any]) -> str:
+    """The mean rate after the start; in words where a roll has come to an end before."""
+    rate, turned = summary.get("angular_velocity_mean"), summary.get("revolutions")
+    if not isinstance(rate, int | float):
+        return "- rev/s"
+    ended = isinstance(turned, int | float) and abs(turned) >= STILL and abs(rate) < STILL
+    return "and then no more" if ended else f"{rate:.2f} rev/s"
+
+
 def _asked(summary: dict[str, Any], velocity: str) -> str:
     """What of a velocity is commanded; see `RollingSettings.commanded`."""
     key = f"{velocity}_commanded"
     if key not in summary:
         return "follows from the pace"
-    value = summary[key]
-    return f"commanded {value:.2f}" if isinstance(value, int | float) else "commanded by a schedule"
+    value, mean = summary[key], summary.get(f"{velocity}_mean")
+    if not isinstance(value, int | float):
+        return "commanded by a schedule"
+    said = f"commanded {value:.2f}"
+    if not (summary["success"] and isinstance(mean, int | float)):
+        return said
+    return (
+        f"{said}, which it does not follow" if abs(mean - value) > AWAY * abs(value) > 0.0 else said
+    )
 
 
 def described(log: "RunLog") -> str:

@@ -154,6 +154,15 @@ def test_the_head_s_share_and_peak():
     assert found.force_p99 == pytest.approx(200.0 / WEIGHT, rel=1e-4)
 
 
+def test_the_sustained_force_is_the_largest_of_the_means():
+    """A blow of one row: a percentile does not see it, and the peak is a physics step's."""
+    found = looks(
+        roll(contacts=[("chest", slice(120, 121), 900.0), ("chest", slice(0, 240), 50.0)])
+    )
+    assert found.force_sustained == pytest.approx(1050.0 / WEIGHT, rel=1e-4)
+    assert found.force_p99 < found.force_sustained < found.force_peak
+
+
 def arrivals(log):
     """Rows in which the head comes within 10 cm of the ground, one a revolution."""
     skull = adult().geom("head").id

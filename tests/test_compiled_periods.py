@@ -75,6 +75,7 @@ PACED = ("behaviour=forward_roll", "duration=2", "seed=2003")
         (*PACED, "behaviour.heading=-70", "physics.substeps=2"),
         (*PACED, "behaviour.pace.keep=speed", "behaviour.pace.over=[foot_l,shin]"),
         (*PACED, "behaviour.pace.schedule=[[0.5,0.3],[1.0,1.2]]"),
+        (*PACED, "behaviour.pace.schedule=[[0.3,0],[1.5,0.8]]", "behaviour.pace.easing=1"),
         ("excursion=integral", "duration=1"),
         ("behaviour.poses.a.knee=[1.9,0.1,-0.2,0.1,0.1,-0.05,0.07]", "duration=1"),
         ("behaviour.angular_momentum=30", "duration=1"),
@@ -106,7 +107,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     """Whoever adds a setting gives it to C, or has `Rolling.compiled` refuse it."""
     assert {field.name for field in fields(PaceSettings)} == {
         *PACE,
-        *("keep", "over", "settling", "schedule"),
+        *("keep", "over", "settling", "schedule", "easing"),
     }
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),

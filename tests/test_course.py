@@ -97,7 +97,6 @@ def test_rates_hold_from_their_times_on():
             ["behaviour.pace=null", "excursion=root"],
             "behaviour.course: excursion=root controls the root's",
         ),
-        (["+finish=stand", "criteria=finish"], "a roll along a course has no finish"),
         (
             ["behaviour.pace=null", "behaviour.angular_momentum=20"],
             "a course commands velocities: give no angular_momentum",
@@ -167,6 +166,21 @@ def test_a_commanded_rate_of_turning_is_met():
     heading = np.degrees(np.unwrap(np.arctan2(-axis[:, 0], axis[:, 1])))
     assert heading[-30:].mean() == pytest.approx(-12.0 * (6.0 - 0.25 - 1.0), abs=12.0)
     assert judged.columns["lateral_rms"] == 0.0
+
+
+def test_who_stands_up_faces_where_the_way_led():
+    log, judged = rolled(
+        *("+course=circle", "+finish=stand", "behaviour.finish.after=3", "duration=9", "seed=2003"),
+        "behaviour.angular_velocity=0.7",
+    )
+    assert 3.0 <= judged.columns["stands_from"] < 7.0
+    stands = log["command/stage"] > 0
+    front = log["trajectory/trunk_axes"][-1][:, 0]
+    way = log["command/axes"][~stands][-1, 0]
+    assert np.degrees(np.arctan2(way[1], way[0])) > 25.0, "it has come a way round"
+    assert np.degrees(np.arccos(front @ way)) < 25.0
+    assert (log["command/axes"][stands] == log["command/axes"][-1]).all()
+    assert log["command/axes"][-1, 0] == pytest.approx(way, abs=1e-3)
 
 
 def test_a_way_that_does_not_turn_is_as_before():

@@ -87,3 +87,31 @@ def test_a_pace_is_told_by_what_it_keeps(overrides, asked, said):
     whole = {"success": True, "solver_failures": 0, **row}
     lines = [line for line in readable(whole).splitlines() if line.endswith(")")]
     assert [line.partition("(")[2].rstrip(")") for line in lines[:2]] == list(said)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"angular_velocity_mean": 0.71}, "8.0 rev in 10.0 s, 0.71 rev/s (commanded 1.30)"),
+        (
+            {"angular_velocity_mean": 0.71, "angular_velocity_commanded": 5.0},
+            "8.0 rev in 10.0 s, 0.71 rev/s (commanded 5.00, which it does not follow)",
+        ),
+        (
+            {"angular_velocity_mean": 0.004, "revolutions": 1.1, "success": False},
+            "1.1 rev in 10.0 s, and then no more (commanded 1.30)",
+        ),
+        (
+            {"angular_velocity_mean": 0.0, "revolutions": 0.01, "success": False},
+            "0.0 rev in 10.0 s, 0.00 rev/s (commanded 1.30)",
+        ),
+        (
+            {"angular_velocity_mean": None, "success": False},
+            "8.0 rev in 10.0 s, - rev/s (commanded 1.30)",
+        ),
+    ],
+)
+def test_what_is_said_of_its_pace(changes, said):
+    row = {"success": True, "solver_failures": 0, "revolutions": 8.0, "duration": 10.0}
+    row |= {"angular_velocity_commanded": 1.3} | changes
+    assert readable(row).splitlines()[1].partition("rolled")[2].strip() == said

@@ -1,5 +1,6 @@
 """A roll that keeps a commanded pace, and ends on its feet."""
 
+import math
 from dataclasses import replace
 from math import tau
 
@@ -114,6 +115,72 @@ def test_a_schedule_takes_over_at_its_times():
         replace(SETTINGS, schedule=((2.0, 0.9), (2.0, 0.4)))
 
 
+# ---------------------------------------------------------------- halts
+
+
+def test_at_a_command_of_nothing_it_waits_at_once_and_goes_on_at_once():
+    pace = Pace(replace(SETTINGS, schedule=((2.0, 0.0), (5.0, 0.6))), 0.6, 0.0)
+    assert pace.at(tau * 0.05, 0.1, 0.0, 3.0) == pytest.approx((0.0, 0.0, 5.0), abs=1e-12)
+    clock = Clock(7.0, 0.3)
+    for row in range(120, 301):  # nothing is made good after a halt
+        clock = pace.tick(clock, 6.8, row * PERIOD, PERIOD)
+    assert clock == pytest.approx((6.8 + 0.6 * PERIOD, 0.6 * PERIOD))
+    assert pace.at(tau * 0.05, 0.1, clock.late, 5.0).brake == 1.0
+
+
+def test_who_has_stopped_is_held_less_stiffly():
+    pace = Pace(replace(SETTINGS, schedule=((2.0, 0.0),), easing=0.5), 0.6, 0.0)
+    speeds = (2.0, 0.5, 0.25, -0.25, 0.0)
+    brakes = [pace.at(tau * 0.05, 0.1, 0.0, 3.0, speed).brake for speed in speeds]
+    assert brakes == pytest.approx([5.0, 5.0, 3.0, 3.0, 1.0])
+    assert pace.at(tau * 0.05, 0.1, -0.5, 1.0, 0.0).brake == 5.0, "who only waits is"
+
+
+@pytest.mark.parametrize(
+    ("schedule", "first", "halts"),
+    [
+        ((), 0.7, ()),
+        (((7.0, 0.0), (10.0, 0.6)), 0.7, ((7.0, 10.0),)),
+        (((3.0, 0.6), (9.0, 0.0)), 0.0, ((0.0, 3.0), (9.0, math.inf))),
+    ],
+)
+def test_when_it_is_told_to_halt(schedule, first, halts):
+    settings = replace(SETTINGS, schedule=schedule)
+    assert settings.halts(first) == halts
+
+
+def test_it_halts_in_the_squat_and_goes_on():
+    """By where the feet and the trunk are, from starts of which most do."""
+    still, on = 0, 0
+    for seed in (2001, 2003, 2005):
+        log, judged = rolled(
+            *("behaviour.pace.schedule=[[3,0],[7,0.7]]", "duration=11", f"seed={seed}")
+        )
+        rows = slice(6 * 60, 7 * 60)
+        feet = [list(log["model/body"]).index(name) for name in (b"foot_l", b"foot_r")]
+        stood = np.isin(log["contacts/body"][rows], feet).any(axis=1).all()
+        upright = log["trajectory/trunk_axes"][rows, 2, 2].min() > 0.0
+        still += bool(stood and upright and np.ptp(log["trajectory/com"][rows, 0]) < 0.1)
+        on += log["trajectory/com"][-1, 0] - log["trajectory/com"][7 * 60, 0] > 2.5
+        assert judged.columns["longest_stall"] < 1.5
+    assert still >= 2
+    assert on >= 2
+
+
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        (["behaviour.angular_velocity=5"], "behaviour.angular_velocity: 5 rev/s cannot be rolled"),
+        (["behaviour.pace.schedule=[[3,1.9]]"], "schedule: 1.9 rev/s .* give at most 1.57"),
+        (["behaviour.pace.keep=speed", "behaviour.speed=3"], "speed: 3 m/s .* at most 2.83"),
+        (["physics.gravity=[0,0,-2]"], "angular_velocity: 0.75 rev/s .* at most 0.71"),
+    ],
+)
+def test_what_no_body_can_roll_is_refused(overrides, said):
+    with pytest.raises(InputError, match=said):
+        build(load(["behaviour=forward_roll", "behaviour.angular_velocity=0.75", *overrides]))
+
+
 # ---------------------------------------------------------------- a roll
 
 
@@ -122,7 +189,8 @@ def rolled(*overrides):
     scenario = build(config)
     log = in_memory(scenario)[0].arrays()
     period, asked = 1.0 / config.controller.rate, config.behaviour.commanded
-    return log, judge(log, config.criteria, asked, period, config.duration, scenario.model.mj)
+    mj, halts = scenario.model.mj, config.behaviour.halts
+    return log, judge(log, config.criteria, asked, period, config.duration, mj, halts)
 
 
 @pytest.mark.parametrize("rate", [0.55, 0.9])

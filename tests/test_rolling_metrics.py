@@ -1,5 +1,6 @@
 """A roll in numbers, on logs made by hand."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -47,6 +48,7 @@ GOOD = RollingMetrics(
     lateral_rms=0.2,
     longest_stall=0.4,
     stalled_at=2.0,
+    went_on=math.nan,
     slowest_revolution=1.5,
     setback=0.0,
     height_least=0.25,
@@ -326,6 +328,7 @@ def test_short_logs(steps):
         "recovery",
         "recovered",
         "sticking",  # control uses no contact here
+        "went_on",  # nothing was to halt
         *(("jerk",) if steps < 3 else ()),
         *(("chatter",) if steps < 2 else ()),
         *OF_REVOLUTIONS,
@@ -369,6 +372,7 @@ def test_empty_log():
         ({"revolutions": 0.99}, "no whole revolution: turned 0.99 rev"),
         ({"revolutions": np.nan}, "no whole revolution: turned nan rev"),
         ({"slowest_revolution": 6.0}, "too slow: a revolution took 6.00 s"),
+        ({"went_on": 7.0}, "told to halt at 7 s, and not still for 1 s"),
         ({"setback": 0.25}, "rocked back by 0.25 rev"),
         ({"flight_turn": 0.5}, "turned in the air: 0.50 of a revolution"),
         ({"penetration": 0.12}, "sank into the ground by 0.120 m"),

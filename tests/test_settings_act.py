@@ -85,8 +85,13 @@ CASES = {
     "clip": Case(("behaviour=reference_roll",), r"behaviour\.(?!align_with_slope).*"),
     "pace that waits": Case(
         ("behaviour=forward_roll", "behaviour.angular_velocity=0.4"),
-        r"behaviour\.pace\.(?!most|travel).*",
+        r"behaviour\.pace\.(?!most|travel|easing).*",
         seconds=2.5,
+    ),
+    "pace that halts": Case(
+        ("behaviour=forward_roll", "behaviour.pace.schedule=[[0.2,0]]"),
+        r"behaviour\.pace\.easing",
+        seconds=2.0,
     ),
     "pace that hurries": Case(
         ("behaviour=forward_roll", "behaviour.angular_velocity=1.4"),

@@ -78,6 +78,7 @@ class CompiledRoll:
             by_speed=settings.keep == "speed",
             changes=len(pace.times),
             count=len(over),
+            easing=settings.easing or 0.0,
             times=self._at(np.array(pace.times, float)),
             rates=self._at(np.array(pace.rates, float)),
             over=self._at(np.array(over, np.int32)),

@@ -1,11 +1,13 @@
 """A roll that ends on its feet: it waits in the squat, and from there stages take over.
 
 What it is to do then are stages as in `rotctl.behaviours.staged`, mostly one that balances and
-rises. Until they begin the run is the roll's alone, and what they want is no part of it.
+rises, along the way that it came on. Until they begin the run is the roll's alone, and what they
+want is no part of it.
 """
 
-from dataclasses import field
-from math import tau
+from dataclasses import field, replace
+from functools import lru_cache
+from math import degrees, tau
 from typing import Annotated, NamedTuple
 
 from pydantic import Field
@@ -59,7 +61,7 @@ class FinishingMemory(NamedTuple):
     """What it remembers.
 
     Attributes:
-        roll: of the roll.
+        roll: of the roll; where its way led when the stages began is where they face.
         end: of the stages; None before they begin.
     """
 
@@ -85,9 +87,16 @@ class Finishing:
             InputError: a body or a joint is not there, or a task has no gains.
         """
         self._settings, self._roll, self._model = settings, roll, model
-        self._end = Staged(staged, model, control, measured)
         self.axes = roll.axes
-        ends = [f"{name} at the end" if name in roll.tasks else name for name in self._end.tasks]
+
+        @lru_cache(maxsize=1)
+        def end(turned: float) -> Staged:
+            faced = replace(staged, heading=staged.heading + degrees(turned))
+            return Staged(faced, model, control, measured)
+
+        self._end = end
+        names = end(0.0).tasks
+        ends = [f"{name} at the end" if name in roll.tasks else name for name in names]
         self.tasks = (*roll.tasks, *ends)
 
     def start(self, pitch: float) -> Placement:
@@ -101,18 +110,22 @@ class Finishing:
     def advance(self, before: FinishingMemory, state: State) -> FinishingMemory:
         """Memory now; the stages begin where the roll waits on its feet."""
         if before.end is not None:
-            return FinishingMemory(before.roll, self._end.advance(before.end, state))
+            return before._replace(end=self._stages(before).advance(before.end, state))
         over = state.time >= self._settings.after
         roll = self._roll.advance(before.roll, state, goes=not over)
         if over and self._waits(roll, state):
-            return FinishingMemory(roll, self._end.begin(roll.excursion.phase, state))
+            begun = self._end(roll.course.turned).begin(roll.excursion.phase, state)
+            return FinishingMemory(roll, begun)
         return FinishingMemory(roll)
 
+    def _stages(self, memory: FinishingMemory) -> Staged:
+        return self._end(memory.roll.course.turned)
+
     def _waits(self, roll: RollingMemory, state: State) -> bool:
-        s, momentum = self._settings, state.momentum
-        speed = float(dot(self.axes[0], momentum.com_velocity))
+        s, momentum, axes = self._settings, state.momentum, roll.bearing.frame.axes
+        speed = float(dot(axes[0], momentum.com_velocity))
         capture = self._roll.ahead(roll, state) + speed / pendulum_rate(self._model, state)
-        turning = abs(float(dot(self.axes[1], momentum.angular_velocity))) / tau
+        turning = abs(float(dot(axes[1], momentum.angular_velocity))) / tau
         off = abs(self._roll.from_waiting(roll))
         return abs(capture) < s.reach and turning < s.turning and off < s.within
 
@@ -122,7 +135,7 @@ class Finishing:
         if memory.end is None:
             command = self._roll.command(memory.roll, state)
             return command._replace(slots=list(range(rolling)))
-        command = self._end.command(memory.end, state)
+        command = self._stages(memory).command(memory.end, state)
         slots = command.slots or []
         return command._replace(slots=[rolling + slot for slot in slots])
 
@@ -130,5 +143,5 @@ class Finishing:
         """What the log keeps of it; the stages are numbered after the roll, which is 0."""
         if memory.end is None:
             return self._roll.signals(memory.roll, state)
-        signals = self._end.signals(memory.end, state)
+        signals = self._stages(memory).signals(memory.end, state)
         return signals._replace(stage=signals.stage + 1)

@@ -8,15 +8,18 @@ wait for or to make good in the squat.
 
 from bisect import bisect_right
 from itertools import pairwise
-from math import cos, pi, tau
+from math import cos, floor, inf, pi, sqrt, tau
 from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.errors import InputError
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 Share = Annotated[NonNegative, Field(le=1)]
+Halts = tuple[tuple[float, float], ...]
+SWING = 1 / 18  # [-] of the way in a revolution: amplitude of the height of the centre of mass
 SLIP = 0.5  # [rev] the clock is never further ahead or behind: it does not run away from a stall
 
 
@@ -39,8 +42,10 @@ class PaceSettings:
         brake: how much stiffer the dampers along the way are while it waits [-].
         gain: of what is waited or made good, for a revolution that it is off the clock [1/rev].
         most: how much quicker it may go there [-].
+        easing: speed below which a halt brakes less and less [m/s]: stiff dampers stop who comes
+            in, and let who stands there sink onto the seat. None: it brakes as in any wait.
         schedule: times and what is commanded from then on in place of the kept velocity
-            [s, rev/s or m/s].
+            [s, rev/s or m/s]; at 0 it halts in the next squat.
     """
 
     keep: Literal["rate", "speed"]
@@ -59,12 +64,20 @@ class PaceSettings:
     brake: Annotated[Positive, Field(ge=1)]
     gain: NonNegative
     most: Annotated[Positive, Field(ge=1)]
+    easing: Positive | None = None
     schedule: Annotated[tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000)] = ()
 
     def __post_init__(self) -> None:
         times = [time for time, _ in self.schedule]
         if any(later <= time for time, later in pairwise(times)):
             raise ValueError("schedule: its times must grow")
+
+    def halts(self, first: float) -> Halts:
+        """When it is told 0, and until when [s]; `first` is the command at the start."""
+        begins = ((0.0, first), *self.schedule)
+        ends = (*(time for time, _ in self.schedule), inf)
+        spans = zip(begins, ends, strict=True)
+        return tuple((begin, end) for (begin, value), end in spans if not value)
 
 
 class Clock(NamedTuple):
@@ -109,6 +122,30 @@ class Pace:
         first = rate if s.keep == "rate" else speed
         self.rates = [each / per for each in (first, *(value for _, value in s.schedule))]
 
+    def check(self, gravity: float) -> None:
+        """Look at all that is commanded.
+
+        The height of the centre of mass swings by `amplitude` once in a revolution. Down from the
+        top of it takes an acceleration of amplitude (2 pi rate)2, and gravity [m/s2] gives no more.
+
+        Raises:
+            InputError: a roll so quick leaves the ground.
+        """
+        s = self.settings
+        amplitude = SWING * s.travel
+        most = sqrt(gravity / amplitude) / tau if gravity > 0.0 else inf
+        quick = max(self.rates)
+        if quick <= most:
+            return
+        per, unit = (1.0, "rev/s") if s.keep == "rate" else (s.travel, "m/s")
+        first = "behaviour.angular_velocity" if s.keep == "rate" else "behaviour.speed"
+        key = first if quick == self.rates[0] else "behaviour.pace.schedule"
+        raise InputError(
+            f"{key}: {quick * per:g} {unit} cannot be rolled: a centre of mass that comes down "
+            f"{2.0 * amplitude:.2g} m in half a revolution falls too slowly; "
+            f"give at most {floor(100.0 * most * per) / 100.0:g}"
+        )
+
     def commanded(self, time: float) -> float:
         """What is commanded at a time [s], as an angular velocity [rev/s]."""
         return self.rates[bisect_right(self.times, time)]
@@ -121,7 +158,10 @@ class Pace:
             time: now [s].
             period: [s].
         """
-        late = clock.due + self.commanded(time) * period - come
+        asked = self.commanded(time)
+        if not asked:  # a halt: it goes on from where it is then
+            return Clock(come)
+        late = clock.due + asked * period - come
         late = min(max(late, -SLIP), SLIP)
         return Clock(come + late, late)
 
@@ -129,7 +169,7 @@ class Pace:
         """How far a phase [rad] is before the one in which it waits, at most half [rev]."""
         return (self.settings.wait - phase / tau + 0.5) % 1.0 - 0.5
 
-    def at(self, phase: float, ahead: float, late: float, time: float) -> Wanted:
+    def at(self, phase: float, ahead: float, late: float, time: float, goes: float = 0.0) -> Wanted:
         """What to ask for.
 
         Args:
@@ -137,14 +177,16 @@ class Pace:
             ahead: of the bodies it waits over, where the centre of mass is [m].
             late: see `Clock` [rev].
             time: [s].
+            goes: how fast it goes along the way [m/s].
         """
         s = self.settings
         turn = phase / tau
         before = self.before(phase)
         here = 0.5 + 0.5 * cos(pi * before / s.width) if abs(before) < s.width else 0.0
-        share = min(max(1.0 + s.gain * late, 0.0), s.most)
+        asked = self.commanded(time)
+        share = min(max(1.0 + s.gain * late, 0.0), s.most) if asked else 0.0
         early = max(1.0 - share, 0.0)
-        flow = max(s.own, self.commanded(time)) * (1.0 - s.calm * early)
+        flow = max(s.own, asked) * (1.0 - s.calm * early)
         base = flow * (1.0 + (max(share, 1.0) - 1.0) * here)
         rate = base * (1.0 - s.swing * cos(tau * (turn - s.swing_from)))
         speed = s.travel * base * (1.0 - s.surge * cos(tau * (turn - s.surge_from)))
@@ -152,5 +194,12 @@ class Pace:
         return Wanted(
             rate + waits * (s.settling[0] * before - rate),
             speed + waits * (s.settling[1] * (s.ahead - ahead) - speed),
-            1.0 + waits * (s.brake - 1.0),
+            1.0 + waits * (self._brake(asked, goes) - 1.0),
         )
+
+    def _brake(self, asked: float, goes: float) -> float:
+        """How much stiffer it waits, told a rate [rev/s] and as fast as it goes [m/s]."""
+        s = self.settings
+        if asked or s.easing is None:
+            return s.brake
+        return 1.0 + (s.brake - 1.0) * min(abs(goes) / s.easing, 1.0)

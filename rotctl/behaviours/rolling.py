@@ -69,6 +69,8 @@ class Rolling:
         self._pace = (
             Pace(given, settings.angular_velocity, settings.speed) if given is not None else None
         )
+        if self._pace:
+            self._pace.check(-float(model.gravity[2]))
         self._remembering = Remembering(settings, bearings, self._pace, measured, self._period)
         self._over = body_ids(model.mj, list(given.over), "behaviour.pace.over") if given else []
         self._poses = settings.make_poses(model)
@@ -125,7 +127,8 @@ class Rolling:
         self._velocities[:] = self._constant(on)
         if self._pace:
             ahead = self.ahead(memory, state)
-            wanted = self._pace.at(now.phase, ahead, memory.clock.late, state.time)
+            speed = float(dot(on.frame.axes[0], state.momentum.com_velocity))
+            wanted = self._pace.at(now.phase, ahead, memory.clock.late, state.time, speed)
             self._velocities[0] = wanted.speed * on.way
             self._velocities[1] = math.tau * wanted.rate * on.left
             self._damping[:] = self._usual

@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import Finishing, FinishSettings
-from rotctl.behaviours.pacing import PaceSettings
+from rotctl.behaviours.pacing import Halts, PaceSettings
 from rotctl.behaviours.rolling import Rolling
 from rotctl.control import ControllerSettings
 from rotctl.errors import InputError
@@ -74,8 +74,6 @@ class RollingSettings:
             if self.pace is None:
                 raise ValueError("a roll without a pace does not wait, so that it has no finish")
             self.finish.staged(self.roll_about, self.heading)
-        if self.course and self.finish:
-            raise ValueError("a roll along a course has no finish: it would stand up aslant")
         if self.course and self.angular_momentum is not None:
             raise ValueError("a course commands velocities: give no angular_momentum")
 
@@ -95,6 +93,14 @@ class RollingSettings:
             kept = rate if self.pace.keep == "rate" else speed
             asked = {kept: math.nan if self.pace.schedule else asked[kept]}
         return asked if self.finish is None else asked | {"finish_commanded": self.finish.after}
+
+    @property
+    def halts(self) -> Halts:
+        """When a pace is told to halt, and until when [s]."""
+        if self.pace is None:
+            return ()
+        first = self.angular_velocity if self.pace.keep == "rate" else self.speed
+        return self.pace.halts(first)
 
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings

@@ -80,7 +80,9 @@ UNITS: Units = {
     RiseSettings: all_of(length, "height"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
-    PaceSettings: all_of(length, "travel", "ahead") | all_of(rate, "own", "settling"),
+    PaceSettings: all_of(length, "travel", "ahead")
+    | all_of(rate, "own", "settling")
+    | all_of(speed, "easing"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
 }
 """Of settings, what has a unit that grows; `TaskSettings.point` has one for points."""

@@ -85,6 +85,11 @@ class StagedSettings:
         """What is asked for, as columns of the summary [deg]."""
         return {"target_excursion": self.target_excursion}
 
+    @property
+    def halts(self) -> tuple[()]:
+        """Stages have none."""
+        return ()
+
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
     ) -> "Staged":

@@ -11,6 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import rolling, standing
 from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.halts import Halts
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.same import kept
@@ -89,6 +90,7 @@ def judge(
     commanded: Mapping[str, float],
     period: float,
     upright: float,
+    halts: Halts = (),
 ) -> tuple[dict[str, Any], str]:
     """Columns of a run, and why it is no success; empty if it is one.
 
@@ -96,11 +98,12 @@ def judge(
         commanded: what was asked for; see `RollingSettings.commanded`.
         period: of the control [s].
         upright: see the function of that name [m]; NaN where nobody knows, and any height will do.
+        halts: when it is told to halt, and until when [s].
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
     part = rolled(log, commanded["finish_commanded"])
     direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
-    roll = rolling.measure(part, criteria.roll, direction, period)
+    roll = rolling.measure(part, criteria.roll, direction, period, halts)
     rest = max(row, steps - round(criteria.stand.rest / period))
     end = _Part(log, slice(rest, None))
     settings = replace(criteria.stand, height=1e-3)  # of what it was at first: a squat
@@ -114,7 +117,7 @@ def judge(
         or (f"stands {height:.2f} m high" if height <= criteria.height * upright else "")
     )
     columns = asdict(roll) | {"duration": steps * period}
-    del columns["stalled_at"]  # of people's interest in a reason alone
+    del columns["stalled_at"], columns["went_on"]  # of people's interest in a reason alone
     ended = {
         "stands_from": row * period if row < steps else math.nan,
         "stands_at": height,

@@ -26,6 +26,7 @@ from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria
+from rotctl.metrics.halts import Halts
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
@@ -64,6 +65,7 @@ def judge(
     period: float,
     wanted: float,
     mj: mujoco.MjModel | None = None,
+    halts: Halts = (),
 ) -> Judgement:
     """Judge a run.
 
@@ -74,6 +76,7 @@ def judge(
         wanted: how long the run was to be [s].
         mj: what was simulated; without it nobody sees what a roll looks like, nor how high it
             stands in the end for its size.
+        halts: when a roll is told to halt, and until when [s].
     """
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
@@ -82,13 +85,13 @@ def judge(
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
             upright = math.nan if mj is None else finish.upright(mj)
-            found, reason = finish.judge(log, criteria, commanded, period, upright)
+            found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
             rolling_log = finish.rolled(log, commanded["finish_commanded"])
             settle = criteria.roll.settle
         else:
-            rolled = rolling.measure(log, criteria, direction, period)
+            rolled = rolling.measure(log, criteria, direction, period, halts)
             found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
-            del found["stalled_at"]  # of people's interest in a reason alone
+            del found["stalled_at"], found["went_on"]  # of people's interest in a reason alone
             rolling_log, settle = log, criteria.settle
         found |= vars(appearance.measure(rolling_log, mj, direction, period))
         means = found["angular_velocity_mean"], found["speed_mean"]

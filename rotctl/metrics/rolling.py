@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
+from rotctl.metrics.halts import STILL, Halts, going, unkept
 from rotctl.metrics.smoothness import chatter, jerk, recovery, sticking
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
@@ -102,8 +103,9 @@ class RollingMetrics:
             the last second, against the rolling axis [deg]; positive turns left.
         lateral_drift: furthest of the centre of mass to either side of where it started [m].
         lateral_rms: root mean square of how far it is beside that line, or the path it follows [m].
-        longest_stall: longest time without the criterion's progress [s].
+        longest_stall: longest time without the criterion's progress, halts left out [s].
         stalled_at: when that began [s].
+        went_on: when the first halt began that it did not keep [s]; NaN if it kept all.
         slowest_revolution: longest time that a revolution took [s].
         setback: furthest that progress fell back [rev].
         height_least: lowest of the centre of mass above the ground below it [m].
@@ -137,6 +139,7 @@ class RollingMetrics:
     lateral_rms: float
     longest_stall: float
     stalled_at: float
+    went_on: float
     slowest_revolution: float
     setback: float
     height_least: float
@@ -196,7 +199,7 @@ NO_ROWS = RollingMetrics(**_NO_ROWS | dict.fromkeys(_ZERO_AT_FIRST, 0.0) | {"sol
 
 
 def measure(
-    log: Arrays, criteria: RollingCriteria, commanded: float, period: float
+    log: Arrays, criteria: RollingCriteria, commanded: float, period: float, halts: Halts = ()
 ) -> RollingMetrics:
     """Measure a roll.
 
@@ -204,6 +207,7 @@ def measure(
         log: arrays by schema path, a `RunLog` or a buffer's; may have no rows.
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
+        halts: when it is told to halt, and until when [s].
     """
     com = along_way(log)
     steps = len(com)
@@ -218,7 +222,11 @@ def measure(
     axis = in_frame(log, "trajectory/trunk_axis")
     last_second = axis[-round(1.0 / period) :]
     heading = np.degrees([math.atan2(-x, y) for x, y, _ in last_second.tolist()])
-    stall, stalled_at = longest_stall(progress, criteria.stall_progress, period)
+    time, least = period * np.arange(steps, dtype=np.float64), criteria.stall_progress
+    rolls = going(time, halts)
+    stall, begin = longest_stall(progress[rolls], least, period) if rolls.any() else (0.0, 0.0)
+    stalled_at = float(np.flatnonzero(rolls)[round(begin / period)] * period) if stall else 0.0
+    went_on = unkept(time, progress, halts, least, period)
     beside = com[:, 1] - com[0, 1]
     height = com[:, 2] - floats(log, "trajectory/ground_height")
     force = floats(log, "contacts/ground_force")
@@ -233,6 +241,7 @@ def measure(
         lateral_rms=float(np.sqrt((beside**2).mean())),
         longest_stall=stall,
         stalled_at=stalled_at,
+        went_on=math.nan if went_on is None else went_on,
         setback=setback(progress),
         height_least=float(height.min()),
         height_most=float(height.max()),
@@ -246,7 +255,7 @@ def measure(
         **recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=float(np.percentile(fraction, 99)),
         solver_failures=solver_failures(log),
-        **_worst_revolutions(log, direction, progress, axis, period),
+        **_worst_revolutions(log, direction, progress, axis, period, rolls),
     )
 
 
@@ -256,8 +265,9 @@ def _worst_revolutions(
     progress: NDArray[np.float64],
     axis: NDArray[np.float64],
     period: float,
+    rolls: NDArray[np.bool_],
 ) -> dict[str, Any]:
-    """The members of `RollingMetrics` that are about revolutions."""
+    """The members of `RollingMetrics` about revolutions, which last for as many rows of `rolls`."""
     first, last = revolutions(progress)
     if not len(last):
         return dict.fromkeys(OF_REVOLUTIONS, math.nan)
@@ -269,7 +279,7 @@ def _worst_revolutions(
     along = float((within(first, last, axis[:, 1]) / (last - first)).min())
     travel = x[last] - x[first]
     return {
-        "slowest_revolution": float((last - first).max() * period),
+        "slowest_revolution": float(within(first, last, rolls.astype(np.float64)).max() * period),
         "flight_turn": float(within(first, last, in_flight).max()),
         "trunk_turn": float((turn[last] - turn[first]).min()),
         "axis_error": math.degrees(math.acos(min(max(along, -1.0), 1.0))),
@@ -299,6 +309,10 @@ def failure_reason(metrics: RollingMetrics, criteria: RollingCriteria, wanted: f
         (
             m.longest_stall < c.stall_time,
             f"stalled for {m.longest_stall:.2f} s from t = {m.stalled_at:.2f} s",
+        ),
+        (
+            math.isnan(m.went_on),
+            f"told to halt at {m.went_on:g} s, and not still for {STILL:g} s",
         ),
         (m.revolutions >= 1.0, f"no whole revolution: turned {m.revolutions:.2f} rev"),
         (

@@ -96,7 +96,7 @@ typedef struct {
 // A pace's settings; behaviours/pacing.py. Times of changes are (changes), rates one more.
 typedef struct {
   double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, ahead;
-  double settling[2], brake, gain, most, usual[6];
+  double settling[2], brake, gain, most, easing, usual[6];
   int by_speed, changes, count;
   const double *times, *rates;
   const int* over;  // (count) bodies

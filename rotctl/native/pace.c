@@ -28,9 +28,15 @@ static void tick(const Roll* r, const mjData* d, const Reading* now, RollMemory*
   double way[3], come = along(r->axes + 3, it->angle) / TURN;
   for (int i = 0; i < 3; i++) way[i] = now->com[i] - it->origin[i];
   if (p->by_speed) come = along(r->axes, way) / p->travel;
-  double late = it->due + commanded(p, d->time) * r->period - come;
-  it->late = fmin(fmax(late, -SLIP), SLIP);
+  double asked = commanded(p, d->time), late = it->due + asked * r->period - come;
+  it->late = asked ? fmin(fmax(late, -SLIP), SLIP) : 0;
   it->due = come + it->late;
+}
+
+// `_brake`; an easing of 0 is none
+static double brake_of(const Pace* p, double asked, double speed) {
+  if (asked || !p->easing) return p->brake;
+  return 1 + (p->brake - 1) * fmin(fabs(speed) / p->easing, 1);
 }
 
 // `at`
@@ -39,12 +45,13 @@ static void keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMe
   tick(r, d, now, it);
   double turn = it->phase / TURN, before = modulo(p->wait - turn + 0.5, 1) - 0.5, here = 0;
   if (fabs(before) < p->width) here = 0.5 + 0.5 * cos(mjPI * before / p->width);
-  double share = fmin(fmax(1 + p->gain * it->late, 0), p->most), early = fmax(1 - share, 0);
-  double flow = fmax(p->own, commanded(p, d->time)) * (1 - p->calm * early);
+  double asked = commanded(p, d->time);
+  double share = asked ? fmin(fmax(1 + p->gain * it->late, 0), p->most) : 0;
+  double early = fmax(1 - share, 0), flow = fmax(p->own, asked) * (1 - p->calm * early);
   double base = flow * (1 + (fmax(share, 1) - 1) * here);
   double rate = base * (1 - p->swing * cos(TURN * (turn - p->swing_from)));
   double speed = p->travel * base * (1 - p->surge * cos(TURN * (turn - p->surge_from)));
-  double waits = here * early, brake = 1 + waits * (p->brake - 1);
+  double waits = here * early, brake = 1 + waits * (brake_of(p, asked, along(r->axes, now->com_velocity)) - 1);
   rate += waits * (p->settling[0] * before - rate);
   speed += waits * (p->settling[1] * (p->ahead - ahead(r, d, now)) - speed);
   for (int i = 0; i < 3; i++) {

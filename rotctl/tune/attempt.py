@@ -50,7 +50,8 @@ def attempt(item: Attempt) -> TrialRun:
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, look=hopeless(item.stopping, commanded))
     asked, log = behaviour.commanded, buffer.arrays()
-    judged = judge(log, criteria, asked, period, config.duration, scenario.model.mj)
+    mj, halts = scenario.model.mj, behaviour.halts
+    judged = judge(log, criteria, asked, period, config.duration, mj, halts)
     found = judged.columns | {metric.name: _value(metric, log, config) for metric in item.metrics}
     return TrialRun(
         survived=found["duration"],
