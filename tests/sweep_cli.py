@@ -49,6 +49,14 @@ def finish(*arguments, **settings):
     return done.returncode, done.stdout, done.stderr
 
 
+def python(text):
+    """A script in a process of its own: (exit code, stdout, stderr)."""
+    done = subprocess.run(
+        [sys.executable, "-c", text], capture_output=True, text=True, timeout=PATIENCE
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
 def start(*arguments, **settings):
     """A command in a process of its own, which Ctrl-C reaches even where we ignore it."""
     return subprocess.Popen(
@@ -124,13 +132,14 @@ def published(out):
 
 
 def workers(driver):
-    """The worker processes of a driver."""
+    """The worker processes of a driver: forked ones have its command line."""
     try:
+        own = Path(f"/proc/{driver}/cmdline").read_bytes()
         pids = Path(f"/proc/{driver}/task/{driver}/children").read_text().split()
         lines = {int(pid): Path(f"/proc/{pid}/cmdline").read_bytes() for pid in pids}
     except FileNotFoundError:  # one of them is gone
         return []
-    return [pid for pid, line in lines.items() if b"spawn_main" in line]
+    return [pid for pid, line in lines.items() if line == own or b"spawn_main" in line]
 
 
 def kill(pid):

@@ -1,10 +1,12 @@
 """The engines: every task gives one result, whatever happens to the worker that has it."""
 
+import json
 import os
 from contextlib import closing
 from multiprocessing import active_children
 
 import pytest
+import sweep_cli
 import sweep_tasks
 from sweep_cli import until
 
@@ -72,6 +74,40 @@ def test_closing_the_results_drops_what_runs(tmp_path):
         results.close()
         assert set(active_children()) == others
         assert list(engine.map(sweep_tasks.square, [3], retries=0)) == [(0, 9)]
+
+
+def test_a_process_with_one_thread_forks_its_workers_and_leaves_them_nothing_open():
+    code, stdout, stderr = sweep_cli.python(FORKED)
+    assert (code, stderr) == (0, "")
+    ours, of_workers = map(set, json.loads(stdout))
+    assert "lock" in ours
+    assert not ours & of_workers
+
+
+# Names of files and sockets that a driver has open, and those of its workers. (A pipe that tells of
+# a worker's end has one name at both ends.)
+FORKED = """
+import json, os, tempfile
+from pathlib import Path
+
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+os.chdir(tempfile.mkdtemp())
+lock = open("lock", "w")
+from rotctl.sweep.local import LocalEngine
+
+def files(pid):
+    found = [place.resolve().name for place in Path(f"/proc/{pid}/fd").iterdir()]
+    return [name for name in found if name == "lock" or name.startswith("socket:")]
+
+def named(task):
+    return task
+
+engine = LocalEngine(2)
+list(engine.map(named, range(2), retries=0))  # at home in no module: spawned ones could not
+pids = [worker.process.pid for worker in engine._idle]
+print(json.dumps([files("self"), sum(map(files, pids), [])]))
+engine.close()
+"""
 
 
 def test_one_process_is_one_process():

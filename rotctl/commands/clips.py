@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl.commands.arguments import Commands, folder_name, role_and_name
-from rotctl.commands.bars import bar, following
+from rotctl.bars import bar, following
 from rotctl.errors import InputError
 from rotctl.wording import import_warnings, imported, printable
 

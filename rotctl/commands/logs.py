@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from rotctl.commands.arguments import Commands, log_file, second
-from rotctl.commands.bars import bar, following
+from rotctl.bars import bar, following
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
-from rotctl.commands.bars import bar
+from rotctl.bars import bar
 from rotctl.errors import InputError
 from rotctl.wording import one_line, readable
 

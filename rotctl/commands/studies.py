@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, name_and_text
-from rotctl.commands.bars import bar, following
+from rotctl.bars import bar, bars, following
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -49,8 +49,6 @@ def sweep(arguments: argparse.Namespace) -> int:
     """Simulate a grid of runs, or what is left of it."""
     from contextlib import closing
 
-    from tqdm import tqdm
-
     from rotctl.headless import mujoco_without_opengl
 
     mujoco_without_opengl()
@@ -72,7 +70,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     out = arguments.out or Path("sweeps", experiment)
     kept = keep.read(arguments.keep)
     watched = None if not arguments.quiet else True  # None: only on a terminal
-    matrix = experiments.matrix(arguments.overrides)
+    matrix, tqdm = experiments.matrix(arguments.overrides), bars()
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
             runs = planned(bar)

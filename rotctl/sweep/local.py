@@ -5,6 +5,7 @@ open whose task killed it. Here a dead worker is an end of file on its own pipe:
 known, and the others do not notice.
 """
 
+import gc
 import os
 import pickle
 import signal
@@ -45,10 +46,15 @@ class Worker:
 
     @classmethod
     def start(cls) -> "Worker":
-        """Spawned, not forked: no lock or thread of this process is copied half-way."""
-        context = get_context("spawn")
+        """Forked, and there at once with all that is imported, where this is the only thread.
+
+        Else spawned, so that no lock that another thread holds is copied half-way.
+        """
+        forked = _alone()
+        context = get_context("fork" if forked else "spawn")
         ours, theirs = context.Pipe()
-        process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        inherited = _open_files() - {theirs.fileno()} if forked else set()
+        process = context.Process(target=_serve, args=(theirs, inherited), daemon=True)  # type: ignore[attr-defined]
         process.start()
         theirs.close()  # else the pipe would not end with the worker
         return cls(process, ours)
@@ -148,10 +154,37 @@ def _started() -> Worker:
     return Worker.start()
 
 
-def _serve(pipe: Connection) -> None:
-    """The life of a worker: until the driver closes the pipe, or is gone."""
-    mujoco_without_opengl()
+def _alone() -> bool:
+    """Whether this process has one thread; False where nobody tells."""
+    try:
+        return len(os.listdir("/proc/self/task")) == 1
+    except OSError:  # not Linux
+        return False
+
+
+def _open_files() -> set[int]:
+    """Descriptors of this process, but for the standard streams."""
+    found = {int(name) for name in os.listdir("/proc/self/fd")} - {0, 1, 2}
+    still = set()
+    for descriptor in found:
+        with suppress(OSError):  # that of the listing is closed again
+            os.fstat(descriptor)
+            still.add(descriptor)
+    return still
+
+
+def _serve(pipe: Connection, inherited: set[int]) -> None:
+    """The life of a worker: until the driver closes the pipe, or is gone.
+
+    Args:
+        inherited: descriptors of the driver that a fork has copied: its lock on a folder, and its
+            ends of pipes, which would not end with it as long as a copy is open.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the driver decides
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    _let_go(inherited)
+    gc.freeze()  # what the driver has made stays: to look at it would copy its memory
+    mujoco_without_opengl()
     while True:
         try:
             message = pipe.recv_bytes()
@@ -165,6 +198,14 @@ def _serve(pipe: Connection) -> None:
             pipe.send_bytes(answer)
         except OSError:
             return
+
+
+def _let_go(inherited: set[int]) -> None:
+    """Put nothing in place of descriptors, which somebody here may still close."""
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for descriptor in inherited:
+        os.dup2(nothing, descriptor, inheritable=False)
+    os.close(nothing)
 
 
 def _call(message: bytes) -> Any:

@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from rotctl.bars import bars
 from rotctl.sweep.launch import Tally
 
 EVERY = 10.0  # [s] between lines
@@ -30,9 +31,7 @@ def shown(total: int, before: int, quiet: bool) -> Iterator[Callable[[Tally], No
 
 @contextmanager
 def _bar(total: int, before: int) -> Iterator[Callable[[Tally], None]]:
-    from tqdm import tqdm
-
-    with tqdm(total=total, initial=before, unit="run", smoothing=0.05, dynamic_ncols=True) as bar:
+    with bars()(total=total, initial=before, unit="run", smoothing=0.05, dynamic_ncols=True) as bar:
 
         def update(tally: Tally) -> None:
             bar.set_postfix_str(_counts(tally), refresh=False)

@@ -14,10 +14,16 @@ def bar(what: str, unit: str, total: int | None = None, hidden: bool = False) ->
         total: how many units there are, if that is known.
         hidden: also on a terminal.
     """
+    nowhere = hidden or None  # None: only where somebody watches
+    return bars()(total=total, desc=what, unit=unit, leave=False, disable=nowhere, delay=0.2)
+
+
+def bars() -> "type[tqdm[Any]]":
+    """What makes bars, without the thread that watches them: beside one, no worker can be forked."""
     from tqdm import tqdm
 
-    nowhere = hidden or None  # None: only where somebody watches
-    return tqdm(total=total, desc=what, unit=unit, leave=False, disable=nowhere, delay=0.2)
+    tqdm.monitor_interval = 0
+    return tqdm
 
 
 def following(shown: "tqdm[Any]") -> Callable[[int, int], None]:
