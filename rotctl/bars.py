@@ -19,7 +19,7 @@ def bar(what: str, unit: str, total: int | None = None, hidden: bool = False) ->
 
 
 def bars() -> "type[tqdm[Any]]":
-    """What makes bars, without the thread that watches them: beside one, no worker can be forked."""
+    """What makes bars, less the thread that watches them: beside it no worker is forked."""
     from tqdm import tqdm
 
     tqdm.monitor_interval = 0

@@ -112,6 +112,23 @@ def test_chunks_are_whole_rows_of_about_a_mebibyte(tmp_path):
         assert file["trajectory/time"].chunks == (3000,)
 
 
+def test_slots_that_nobody_filled_take_no_room(tmp_path):
+    run = TrajectoryBuffer.allocate(
+        steps=50, nq=9, nv=8, nu=2, capacity=100, tasks=2, bodies=2
+    ).arrays()
+    run["contacts/position"][3, 20, 1] = -0.0
+    run["contacts/body"][5, 2] = 0
+    run["contacts/normal"][7, 99] = 1.0
+    write(tmp_path / "run.h5", run)
+    with h5py.File(tmp_path / "run.h5") as file:
+        stored = {name: file[name].id.get_num_chunks() for name in SCHEMA if file[name].chunks}
+    log = RunLog.open(tmp_path / "run.h5")
+    log.verify()
+    assert all(log[name].tobytes() == array.tobytes() for name, array in run.items())
+    chunks = ("position", 2), ("body", 1), ("normal", 7), ("force_peak", 0), ("count", 0)
+    assert [stored[f"contacts/{name}"] for name, _ in chunks] == [count for _, count in chunks]
+
+
 def fail(number):
     def raise_it(*_):
         raise OSError(number, os.strerror(number))

@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rotctl.commands.arguments import Commands, folder_name, role_and_name
 from rotctl.bars import bar, following
+from rotctl.commands.arguments import Commands, folder_name, role_and_name
 from rotctl.errors import InputError
 from rotctl.wording import import_warnings, imported, printable
 

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from rotctl.commands.arguments import Commands, log_file, second
 from rotctl.bars import bar, following
+from rotctl.commands.arguments import Commands, log_file, second
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
 

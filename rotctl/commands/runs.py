@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
 from rotctl.bars import bar
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
 from rotctl.errors import InputError
 from rotctl.wording import one_line, readable
 

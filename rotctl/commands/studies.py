@@ -4,8 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, name_and_text
 from rotctl.bars import bar, bars, following
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, name_and_text
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 

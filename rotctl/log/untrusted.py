@@ -22,8 +22,9 @@ from rotctl.log.schema import ATTRIBUTES, GROUPS, OLDEST_READ, SCHEMA_VERSION
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 
 SMALL_BYTES = 2**26  # of data that any file may declare
-# Times a file's size, beyond that: empty slots of contacts pack well, 45 at the most.
-MOST_PACKED = 64
+# Times a file's size, beyond that: empty slots of contacts take no room, and 1024 of them beside a
+# row of the smallest character are 100 times that row.
+MOST_PACKED = 128
 MAX_CHUNK_BYTES = 2**26
 
 # What h5py raises, in our experience of damaged files.
