@@ -8,7 +8,8 @@ import pytest
 
 from rotctl.config import load
 from rotctl.metrics import appearance
-from rotctl.metrics.skeleton import Capsules, Skeleton, overlap
+from rotctl.metrics.skeleton import Capsules, Skeleton, _compiled, _reference, overlap
+from rotctl.native import library
 from rotctl.scenario import model_of
 
 PERIOD = 1.0 / 60.0
@@ -52,6 +53,15 @@ def test_bodies_are_where_mujoco_has_them():
         half = np.where(mj.geom_type[capsules] == 3, mj.geom_size[capsules, 1], 0.0)
         axis = data.geom_xmat[capsules].reshape(-1, 3, 3)[:, :, 2]
         np.testing.assert_allclose(along, half[:, None] * axis, atol=1e-12)
+
+
+@pytest.mark.skipif(not library(), reason="there is no C compiler")
+@pytest.mark.parametrize("terrain", ["flat", "hazards"])  # which has loose boxes
+def test_compiled_places_and_turns_have_the_bits_of_the_reference(terrain):
+    mj = model_of(load(["behaviour=forward_roll_1", f"terrain={terrain}"])).mj
+    qpos = RNG.uniform(-3.0, 3.0, (7, mj.nq))
+    for found, wanted in zip(_compiled(mj, qpos), _reference(mj, qpos), strict=True):
+        np.testing.assert_array_equal(found, wanted)
 
 
 def test_some_rows_are_those_rows():

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 import mujoco
 import numpy as np
 
-from rotctl.metrics.columns import Arrays, Column, floats, in_frame
+from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
 from rotctl.same import kept
@@ -154,15 +154,17 @@ def _revolutions(phase: Array) -> list[slice]:
 
 def _load_of_head(log: Arrays, head: int) -> tuple[Array, float]:
     """Upward force (n,), and the largest of a contact in a physics step [N]."""
-    there = np.asarray(log["contacts/body"]) == head
-    up = floats(log, "contacts/force_realised")[:, :, 2]
-    peak = floats(log, "contacts/force_peak")
+    some = slots_taken(log)
+    there = np.asarray(log["contacts/body"])[:, :some] == head
+    up = np.asarray(log["contacts/force_realised"])[:, :some, 2].astype(float)
+    peak = np.asarray(log["contacts/force_peak"])[:, :some].astype(float)
     return np.where(there, up, 0.0).sum(axis=1), float(np.where(there, peak, 0.0).max(initial=0.0))
 
 
 def _load_of_hands(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Array:
     """Upward force (n,) on both [N]."""
-    body, load = np.asarray(log["contacts/body"]), np.zeros(len(log["contacts/body"]))
+    body = np.asarray(log["contacts/body"])[:, : slots_taken(log)]
+    load = np.zeros(len(body))
     for side in SIDES:
         hand = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "hand" + side)
         middle = skeleton.capsules([hand]).ends[0, 0]

@@ -38,6 +38,12 @@ def floats(log: Arrays, name: str) -> NDArray[np.float64]:
     return np.asarray(log[name], dtype=float)
 
 
+def slots_taken(log: Arrays) -> int:
+    """How many slots of contacts have ever been taken; all beyond are empty."""
+    taken = np.flatnonzero((np.asarray(log["contacts/body"]) >= 0).any(axis=0))
+    return int(taken[-1]) + 1 if len(taken) else 0
+
+
 def solver_failures(log: Arrays) -> int:
     """Control steps on which every solver failed."""
     return int(np.count_nonzero(np.asarray(log["solver/status"]) == ALL_FAILED))

@@ -4,14 +4,17 @@ MuJoCo's own takes one state after the other, which for a log costs as much as a
 simulation.
 """
 
-from collections.abc import Sequence
+import ctypes
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.native import library
 from rotctl.rotations import Array
 from rotctl.same import kept
 
@@ -57,19 +60,12 @@ class Skeleton:
     """A character over the rows of a log."""
 
     def __init__(self, mj: mujoco.MjModel, qpos: Array) -> None:
-        """For `qpos` (n, nq) [m, quaternion, rad] of a model with joints at bodies' origins."""
-        angles = np.ascontiguousarray(qpos.T)
-        place, turn = np.zeros((3, mj.nbody, len(qpos))), np.zeros((4, mj.nbody, len(qpos)))
-        turn[0] = 1.0
-        free, levels = _tree(mj)
-        for body, at in free:
-            place[:, body], turn[:, body] = angles[at : at + 3], angles[at + 3 : at + 7]
-        for bodies, parents, offsets, hinges in levels:
-            above = turn[:, parents]
-            place[:, bodies], turn[:, bodies] = place[:, parents] + _rotated(above, offsets), above
-            for some, columns, axes in hinges:
-                turn[:, some] = _turned(turn[:, some], axes, angles[columns])
-        self._mj, self._place, self._turn = mj, place, turn
+        """For `qpos` (n, nq) [m, quaternion, rad] of a model with joints at bodies' origins.
+
+        Where C has been built it does the same, to the same bits.
+        """
+        self._mj = mj
+        self._place, self._turn = (_compiled if library() else _reference)(mj, qpos)
 
     def origin(self, body: int) -> Array:
         """A body's origin (n, 3) [m]."""
@@ -83,6 +79,38 @@ class Skeleton:
         moved = place + _rotated(turn, _ends(mj)[:, geoms, :, None])
         ends = np.ascontiguousarray(moved.transpose(1, 2, 3, 0))
         return Capsules(bodies, ends, mj.geom_size[geoms, 0])
+
+
+def _reference(mj: mujoco.MjModel, qpos: Array) -> tuple[Array, Array]:
+    """Places (3, nbody, n) and quaternions (4, nbody, n) of all bodies."""
+    angles = np.ascontiguousarray(qpos.T)
+    place, turn = np.zeros((3, mj.nbody, len(qpos))), np.zeros((4, mj.nbody, len(qpos)))
+    turn[0] = 1.0
+    free, levels = _tree(mj)
+    for body, at in free:
+        place[:, body], turn[:, body] = angles[at : at + 3], angles[at + 3 : at + 7]
+    for bodies, parents, offsets, hinges in levels:
+        above = turn[:, parents]
+        place[:, bodies], turn[:, bodies] = place[:, parents] + _rotated(above, offsets), above
+        for some, columns, axes in hinges:
+            turn[:, some] = _turned(turn[:, some], axes, angles[columns])
+    return place, turn
+
+
+def _compiled(mj: mujoco.MjModel, qpos: Array) -> tuple[Array, Array]:
+    """As `_reference`; `library()` must be there."""
+    rows = np.ascontiguousarray(qpos, dtype=float)
+    place, turn = np.empty((3, mj.nbody, len(rows))), np.empty((4, mj.nbody, len(rows)))
+    _function()(mj._address, len(rows), rows.ctypes.data, place.ctypes.data, turn.ctypes.data)
+    return place, turn
+
+
+@lru_cache(maxsize=1)
+def _function() -> Callable[[int, int, int, int, int], None]:
+    function: Callable[[int, int, int, int, int], None] = library().rotctl_skeleton  # type: ignore[union-attr]
+    pointer = ctypes.c_void_p
+    function.argtypes, function.restype = [pointer, ctypes.c_int, *[pointer] * 3], None  # type: ignore[attr-defined]
+    return function
 
 
 @kept(most=8)

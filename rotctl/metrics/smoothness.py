@@ -6,7 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, slots_taken
 
 LIGHT = 7.0  # [N] a hundredth of an adult: the ground hardly carries what it gives less than that
 
@@ -54,9 +54,10 @@ def sticking(log: Arrays) -> float:
 
     What the ground does not carry would be free to leave it. NaN where control never uses one.
     """
-    held = _held(log)
-    force = np.sqrt((floats(log, "contacts/force_realised") ** 2).sum(axis=2))
-    body = np.asarray(log["contacts/body"])
+    held, some = _held(log), slots_taken(log)
+    each = np.asarray(log["contacts/force_realised"])[:, :some].astype(float)
+    force = np.sqrt((each**2).sum(axis=2))
+    body = np.asarray(log["contacts/body"])[:, :some]
     carried = np.zeros(held.shape)
     rows, slots = np.nonzero(force)
     np.add.at(carried, (rows, body[rows, slots]), force[rows, slots])
@@ -65,7 +66,8 @@ def sticking(log: Arrays) -> float:
 
 def _held(log: Arrays) -> NDArray[np.bool_]:
     """Which bodies (steps, n) control keeps still on the ground."""
-    body, used = np.asarray(log["contacts/body"]), np.asarray(log["contacts/used"]).astype(bool)
+    some = slots_taken(log)
+    body, used = (np.asarray(log[f"contacts/{name}"])[:, :some] for name in ("body", "used"))
     held = np.zeros((len(body), int(body.max(initial=0)) + 1), dtype=bool)
     rows, slots = np.nonzero(used)
     held[rows, body[rows, slots]] = True

@@ -162,3 +162,5 @@ int rotctl_decide(Self* s, mjData* d, const Reading* r, const Command* w, Answer
 
 #include "row.c"
 #include "period.c"
+
+#include "skeleton.c"
