@@ -102,33 +102,53 @@ def replace(path: Path, content: bytes, *, durable: bool = False) -> None:
     Raises:
         InputError: `cannot write <path>: <reason>`; what was there stays.
     """
-    with replacing(path, durable=durable) as part:
-        part.write_bytes(content)
+    with _beside(path, durable) as (_, file):
+        while content:
+            content = content[os.write(file, content) :]
 
 
 @contextmanager
 def replacing(path: Path, *, durable: bool = False) -> Iterator[Path]:
     """An empty file beside `path` to write to, which takes its place when all went well.
 
-    Arguments and errors are those of `replace`. A `.part` that a kill left behind is removed
-    first, and made anew: nobody can have put a link there.
+    Arguments and errors are those of `replace`.
     """
+    with _beside(path, durable) as (part, _):
+        yield part
+
+
+@contextmanager
+def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, int]]:
+    """That file, and its descriptor."""
     part = path.with_name(f"{path.name}.part")
     try:
-        part.unlink(missing_ok=True)
         try:  # before it is made: an interrupt may come right after
-            os.close(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
-            yield part
-            if durable:
-                sync(part)
+            file = _new(part)
+            try:
+                yield part, file
+                if durable:
+                    os.fsync(file)
+            finally:
+                os.close(file)
             os.replace(part, path)
-            if durable:
-                sync(path.parent)
-        finally:
+        except BaseException:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
+            raise
+        if durable:
+            sync(path.parent)
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+
+
+def _new(part: Path) -> int:
+    """A file made anew, after what a kill left behind is removed: nobody can have put a link."""
+    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+    try:
+        return os.open(part, flags, 0o666)
+    except FileExistsError:
+        part.unlink(missing_ok=True)
+        return os.open(part, flags, 0o666)
 
 
 @contextmanager

@@ -51,7 +51,8 @@ def _plain_data(value: Any) -> Any:
 
 def to_yaml(settings: "DataclassInstance") -> str:
     """The settings as YAML, in the order of their fields."""
-    return "".join(_yaml(json.dumps({part: value})) for part, value in to_dict(settings).items())
+    parts = [(part.name, getattr(settings, part.name)) for part in fields(settings)]
+    return "".join(_yaml_part(name, part) for name, part in parts)
 
 
 def part_to_yaml(settings: "DataclassInstance", key: str) -> str:
@@ -69,6 +70,13 @@ def part_to_yaml(settings: "DataclassInstance", key: str) -> str:
             raise InputError(unknown_key(key, dotted(parts[:depth]), valid))
         place = inner
     return _yaml(json.dumps({parts[-1]: place})) if parts else to_yaml(settings)
+
+
+@kept(most=1000)
+def _yaml_part(name: str, part: Any) -> str:
+    if type(part) is int:  # a seed, of which each run has another
+        return f"{name}: {part}\n"
+    return _yaml(json.dumps({name: _plain_part(part)}))
 
 
 @lru_cache(maxsize=256)

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from hashlib import sha256
 from math import prod
 from typing import TYPE_CHECKING, Any
@@ -27,11 +28,16 @@ def simulated(arrays: Mapping[str, NDArray[Any]]) -> "Hash":
     digest = sha256()
     for name in filter(arrays.__contains__, SCHEMA):
         array = arrays[name]
-        kind = np.dtype(bool).str if SCHEMA[name].dtype == "?" else array.dtype.str  # not as stored
-        digest.update(f"{name} {kind} {array.shape}\n".encode())
+        digest.update(_heading(name, array.dtype, array.shape))
         for block in _blocks(array):
             digest.update(np.ascontiguousarray(block).data)
     return digest
+
+
+@lru_cache(maxsize=500)
+def _heading(name: str, dtype: "np.dtype[Any]", shape: tuple[int, ...]) -> bytes:
+    kind = np.dtype(bool).str if SCHEMA[name].dtype == "?" else dtype.str  # not as stored
+    return f"{name} {kind} {shape}\n".encode()
 
 
 def content_sha256(simulated: "Hash", attributes: Mapping[str, bool | int | float | str]) -> str:
@@ -54,6 +60,9 @@ def _blocks(array: Any) -> Iterator[NDArray[Any]]:
     """The array's rows, some at a time."""
     if array.ndim == 0 or array.size == 0:
         yield np.asarray(array[()])
+        return
+    if isinstance(array, np.ndarray) and array.nbytes <= _BLOCK_BYTES:
+        yield array
         return
     rows = max(1, _BLOCK_BYTES // (array.dtype.itemsize * prod(array.shape[1:])))
     for first in range(0, len(array), rows):

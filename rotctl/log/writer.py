@@ -19,6 +19,7 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log.buffer import TrajectoryBuffer
 from rotctl.log.digest import content_sha256, simulated
+from rotctl.log.image import Image, place_of
 from rotctl.log.scales import coordinates, write_scales
 from rotctl.log.schema import (
     ATTRIBUTES,
@@ -109,15 +110,17 @@ def encode_run(
     """
     arrays = whole(run, model_xml)
     stored = {name: _stored(array) for name, array in arrays.items()}
-    empty = _empty(
+    image = _empty(
         tuple((name, a.dtype, a.shape, a.dtype.metadata is not None) for name, a in stored.items())
     )
+    stored |= coordinates(arrays)
     root = _root_attributes(attributes)
     root["content_sha256"] = content_sha256(digest or simulated(arrays), root)
-    opened = h5py.h5f.open_file_image(empty, h5py.h5f.FILE_IMAGE_OPEN_RW)
+    opened = h5py.h5f.open_file_image(image.filled(stored), h5py.h5f.FILE_IMAGE_OPEN_RW)
     with h5py.File(opened) as file:
-        for name, array in {**stored, **coordinates(arrays)}.items():
-            _fill(opened, name, array)
+        for name, array in stored.items():
+            if name not in image.places:
+                _fill(opened, name, array)
         top = file["/"]
         for name, value in {**root, "complete": True}.items():
             _write_attribute(top, name, value)
@@ -160,7 +163,7 @@ def _stored(array: NDArray[Any]) -> NDArray[Any]:
 
 
 @lru_cache(maxsize=8)
-def _empty(layout: tuple[tuple[str, "np.dtype[Any]", tuple[int, ...], bool], ...]) -> bytes:
+def _empty(layout: tuple[tuple[str, "np.dtype[Any]", tuple[int, ...], bool], ...]) -> Image:
     """A file without data: to make its datasets takes twice as long as to fill them.
 
     Args:
@@ -177,16 +180,19 @@ def _empty(layout: tuple[tuple[str, "np.dtype[Any]", tuple[int, ...], bool], ...
         for name, spec in SCHEMA.items():
             group, _, leaf = name.partition("/")
             dtype, shape = shapes[name]
-            dataset = groups[group].create_dataset(
-                leaf, shape, dtype, track_times=False, **_storage(name, dtype, shape)
-            )
+            storage = _storage(name, dtype, shape)
+            dataset = groups[group].create_dataset(leaf, shape, dtype, track_times=False, **storage)
             _write_attribute(dataset, "units", spec.unit)
             _write_attribute(dataset, "description", spec.description)
             none[name] = np.zeros(shape, dtype)
+            if prod(shape) and name not in _PACKED and storage.get("chunks", shape) == shape:
+                dataset[...] = none[name]  # room for what is stored as it is
         write_scales(file, none, sizes)
+        names = [name for name in (*SCHEMA, *coordinates(none)) if name not in _PACKED]
+        places = {name: place_of(file[name]) for name in names if file[name].size}
         file.flush()
         content: bytes = file.id.get_file_image()
-    return content
+    return Image(content, {name: place for name, place in places.items() if place})
 
 
 _SCALAR = h5py.h5s.create(h5py.h5s.SCALAR)
