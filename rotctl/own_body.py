@@ -31,6 +31,7 @@ class OwnBody:
         file: MJCF, beside the file that names it, or from the working folder on a command line.
         roles: which body is what, as `left_hip: leg_1`; see `rotctl.motion.naming.ROLES`.
         meshes: `fitted` takes capsules in their place, `none` leaves them out.
+        collision: whether they touch by those capsules or by their convex `hulls`.
         proxies: which of its shapes touch, by their names, `class:NAME` or `group:N`; `*` stands
             for anything. A body of which none is named keeps what it has.
     """
@@ -39,6 +40,7 @@ class OwnBody:
     file: str
     roles: dict[str, str] = field(default_factory=dict)
     meshes: Literal["fitted", "none"] = "fitted"
+    collision: Literal["capsules", "hulls"] = "capsules"
     proxies: Annotated[tuple[str, ...], Field(max_length=1000)] = ()
 
 
@@ -107,7 +109,8 @@ def converted(model: Named) -> dict[str, Any]:
         raise InputError(f"{GROUP}: {error}") from None
     path = model.folder / body.file
     roles, fitted = tuple(body.roles.items()), body.meshes == "fitted"
-    data = _adopted(path, _stamp(path), roles, fitted, body.proxies)
+    hulls = body.collision == "hulls"
+    data = _adopted(path, _stamp(path), roles, fitted, hulls, body.proxies)
     for parts, value in over:
         if plain.find(data, parts) is plain.NOTHING:
             valid = [*OwnBody.__dataclass_fields__, *data]
@@ -122,13 +125,14 @@ def _adopted(
     stamp: tuple[int, int],
     roles: tuple[tuple[str, str], ...],
     meshes: bool,
+    hulls: bool,
     proxies: tuple[str, ...],
 ) -> dict[str, Any]:
     """As a file was at some time."""
     from rotctl.adopting import adopt
 
     try:
-        found = adopt(path, path.stem, dict(roles), meshes=meshes, proxies=proxies)
+        found = adopt(path, path.stem, dict(roles), meshes=meshes, hulls=hulls, proxies=proxies)
     except InputError as error:
         said = str(error).replace("--map ", f"+{GROUP}.roles.")
         raise InputError(said.replace("--proxies ", f"{GROUP}.proxies=")) from None

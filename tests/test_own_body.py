@@ -129,7 +129,7 @@ def test_what_makes_none_is_told(overrides, expected):
 def test_an_unknown_key_is_told():
     assert complaint(INLINE, "character.hight=2").startswith(
         "unknown key 'hight'; did you mean height? valid keys under character: "
-        "kind, file, roles, meshes, proxies, name, height,"
+        "kind, file, roles, meshes, collision, proxies, name, height,"
     )
 
 

@@ -29,7 +29,15 @@ REFUSED = [
     ),
     (
         mjcf("<asset><mesh name='m' file='/elsewhere/m.obj'/></asset>"),
-        "has <mesh>, which a log's model may not have",
+        "has file='/elsewhere/m.obj' in <mesh>; a log's model stands alone",
+    ),
+    (
+        mjcf("<asset><mesh name='m' builtin='sphere' params='4000'/></asset>"),
+        "has a <mesh> of more than its corners",
+    ),
+    (
+        mjcf(f"<asset><mesh name='m' vertex='{'1 ' * 100_001}'/></asset>"),
+        "has more than 100000 numbers of corners",
     ),
     (
         mjcf("<extension><plugin plugin='x'/></extension>"),

@@ -65,6 +65,7 @@ def adopt(
     given: Mapping[str, str] | None = None,
     *,
     meshes: bool = True,
+    hulls: bool = False,
     proxies: tuple[str, ...] = (),
 ) -> Adopted:
     """Read a humanoid of hinges.
@@ -73,13 +74,14 @@ def adopt(
         name: of the character.
         given: roles that the user has named, see `rotctl.motion.naming.find_roles`.
         meshes: whether capsules stand for them; without, they are left out.
+        hulls: whether those that touch do so by their convex hulls, and not by capsules.
         proxies: which of the file's shapes touch, by `rotctl.adopting.proxies`; none are named by
             default, and all do that collide in the file.
 
     Raises:
         InputError: it is none.
     """
-    mj, notes = solid(path, meshes=meshes, proxies=proxies)
+    mj, notes = solid(path, meshes=meshes, hulls=hulls, proxies=proxies)
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
     parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
                for b in range(1, mj.nbody)}  # fmt: skip
@@ -101,8 +103,9 @@ def adopt(
     give_names(segments, bodies, names)
     notes += [*_hang_joints(segments), *unlike(mj, segments)]
     total = float(mj.body_mass[1:].sum())
-    scale = stature(mj, data)
-    made = _character(mj, data, segments, name, total, scale, notes)
+    reach = stature(mj, data, hulls=hulls)
+    shaped = {b: shapes(mj, data, segment, total, hulls=hulls) for b, segment in segments.items()}
+    made = _character(segments, shaped, name, total, reach, notes)
     known = {h.name: h.source for s in segments.values() if s.side != "right" for h in s.hinges}
     return Adopted(made, roles, known, notes)
 
@@ -138,9 +141,8 @@ def _hang_joints(segments: dict[int, Segment]) -> list[str]:
 
 
 def _character(
-    mj: mujoco.MjModel,
-    data: mujoco.MjData,
     segments: dict[int, Segment],
+    shaped: Mapping[int, list[dict[str, Any]]],
     name: str,
     total: float,
     reach: tuple[float, float],
@@ -183,7 +185,7 @@ def _character(
                 joint["spring"] = numbers([hinge.stiffness, hinge.rest])
             joints.append(joint)
         body |= {"joints": joints} if joints else {}
-        body["geoms"] = shapes(mj, data, segment, total)
+        body["geoms"] = shaped[segment.body]
         bodies.append(body)
     if made_up:
         notes.append(

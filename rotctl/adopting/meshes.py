@@ -1,4 +1,4 @@
-"""Meshes of a foreign model as boxes: what of them can touch, by their vertices alone.
+"""Meshes of a foreign model as boxes or hulls: what of them can touch, by their vertices alone.
 
 Only files below the model's own folder are read, and nothing but numbers out of them: MuJoCo never
 sees a stranger's mesh. A box is part of a run's identity, so it is the same on every processor.
@@ -14,7 +14,7 @@ import numpy as np
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.linear import product
-from rotctl.rotations import Array
+from rotctl.rotations import Array, length
 
 MAX_MESHES = 500
 MAX_BYTES = 30_000_000  # of one file
@@ -22,15 +22,21 @@ MAX_WHOLE = 100_000_000  # of all of them
 _HEADER, _FACET = 84, 50  # bytes of a binary STL, and of each of its triangles
 _NUMBER = rb"([-+]?[0-9.]{1,40}(?:[eE][-+]?[0-9]{1,3})?)"
 _VERTEX = re.compile(rb"^[ \t]*v(?:ertex)?[ \t]+" + b"[ \t]+".join([_NUMBER] * 3), re.MULTILINE)
+FLAT = 2e-3  # [-] shortest edge of a box to its longest, below which a hull has no inside
 CLEARLY = 1.01  # [-] by which moments differ that have axes, and a box is smaller that is taken
+_GRID = [-2.0, -1.0, 0.0, 1.0, 2.0]
+_DIRECTIONS = np.array(  # to the points of a grid on a cube's faces
+    [[x, y, z] for x in _GRID for y in _GRID for z in _GRID if max(abs(x), abs(y), abs(z)) == 2.0]
+)
 _KEPT = ("name", "class", "scale", "refpos", "refquat", "vertex")
 
 
-def boxed(path: Path, root: ElementTree.Element) -> list[str]:
+def boxed(path: Path, root: ElementTree.Element, *, hulls: bool = False) -> list[str]:
     """Give each mesh of a model the corners of its box in place of its file.
 
     Args:
         root: of the model at `path`; its mesh elements are changed, and go where none is read.
+        hulls: corners of what is around it more closely, in place of a box.
 
     Returns:
         Why meshes could not be read, one line each.
@@ -52,7 +58,8 @@ def boxed(path: Path, root: ElementTree.Element) -> list[str]:
                     content = files.read(place, min(MAX_BYTES, left), linked=False)
                     left -= len(content)
                     mesh.set("name", mesh.get("name") or Path(file).stem)
-                    mesh.set("vertex", _text(box(vertices(place, content))))
+                    around = outermost if hulls else box
+                    mesh.set("vertex", _text(around(vertices(place, content))))
                 for name in [name for name in mesh.attrib if name not in _KEPT]:
                     del mesh.attrib[name]
             except InputError as error:
@@ -100,6 +107,18 @@ def box(places: Array) -> Array:
             signs = np.array(np.meshgrid(*[(-0.5, 0.5)] * 3)).reshape(3, -1).T
             best = centre + product(0.5 * (low + high) + signs * thin, axes.T)
     return np.asarray(best)
+
+
+def outermost(places: Array) -> Array:
+    """Of some points (n, 3) those that are farthest along 98 directions (k, 3), k at most 98.
+
+    What is between them is what is between all of them to within a twentieth of its size. Of what
+    is flat there are the corners of its box, which is not quite.
+    """
+    found = places[np.unique(product(places, _DIRECTIONS.T).argmax(axis=0))]
+    around = box(found)
+    edges = [length(around[k] - around[0]) for k in (1, 2, 4)]
+    return np.asarray(around if min(edges) < FLAT * max(edges) else found)
 
 
 def _own_axes(arms: Array) -> list[Array]:

@@ -16,12 +16,13 @@ _FEATHER = {"pos": "0 0 0", "mass": "0.001", "diaginertia": "1e-6 1e-6 1e-6"}
 
 
 def solid(
-    path: Path, *, meshes: bool, proxies: tuple[str, ...] = ()
+    path: Path, *, meshes: bool, hulls: bool = False, proxies: tuple[str, ...] = ()
 ) -> tuple[mujoco.MjModel, list[str]]:
     """Bodies, joints, motors and shapes with their masses.
 
     Args:
         meshes: whether boxes stand for them; without, they are left out.
+        hulls: corners of their hulls, in place of boxes.
         proxies: which shapes touch, see `rotctl.adopting.proxies`.
 
     Returns:
@@ -31,7 +32,7 @@ def solid(
         InputError: it is no model with hinges on a free root, or has no such proxies.
     """
     root = read_mjcf(path)
-    notes = boxed(path, root) if meshes else []
+    notes = boxed(path, root, hulls=hulls) if meshes else []
     known = {mesh.get("name", "") for mesh in root.iter("mesh") if "vertex" in mesh.attrib}
     missing = _keep_shapes(root, known if meshes else set())
     if missing:

@@ -18,7 +18,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.support import ends, middle
-from rotctl.mechanics.model import ROOT_BODY, Model, body_ids
+from rotctl.mechanics.hulls import hulls
+from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, lowest_and_highest
 from rotctl.motion import Poses, Turn, make_pose_pair
 from rotctl.rotations import Array, quaternion_from_rotation_vector
 from rotctl.settings import STRICT, NonNegative, Positive
@@ -113,7 +114,10 @@ class Landing:
         mujoco.mj_comPos(mj, data)
         com = data.subtree_com[ROOT_BODY]
         under = np.isin(mj.geom_bodyid, self._feet) & (mj.geom_contype > 0)
-        sole = float((data.geom_xpos[under, 2] - mj.geom_size[under, 0]).min())
+        if hulls(mj):
+            sole = lowest_and_highest(mj, data, under)[0]
+        else:
+            sole = float((data.geom_xpos[under, 2] - mj.geom_size[under, 0]).min())
         ahead = float(com[0]) - middle(ends(self._model, data, self._feet))[0]
         return Contact(attitude, pose, ahead, float(com[2]) - sole)
 

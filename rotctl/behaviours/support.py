@@ -1,6 +1,6 @@
 """The support polygon of the parts that stand, and the capture point over it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from math import fsum, inf, sqrt
 
@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from rotctl.errors import InputError
+from rotctl.mechanics.hulls import hulls, places
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
@@ -20,26 +21,35 @@ LEAST_HEIGHT = 0.1  # [m] of a centre of mass over its feet, for the pendulum th
 def _solid(mj: mujoco.MjModel, body: int) -> tuple[tuple[int, float, float], ...]:
     """A body's solid capsules and spheres: number, half length and radius [m]."""
     capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
-    found = np.flatnonzero((mj.geom_bodyid == body) & (mj.geom_contype > 0)).tolist()
+    solid = (mj.geom_bodyid == body) & (mj.geom_contype > 0)
+    found = np.flatnonzero(solid & (mj.geom_type != mujoco.mjtGeom.mjGEOM_MESH)).tolist()
     return tuple(
         (geom, float(mj.geom_size[geom, 1] * capsule[geom]), float(mj.geom_size[geom, 0]))
         for geom in found
     )
 
 
+def _corners(mj: mujoco.MjModel, data: mujoco.MjData, body: int) -> Iterator[list[float]]:
+    """Where the corners of a body's hulls are [m]."""
+    for geom in hulls(mj):
+        if mj.geom_bodyid[geom] == body:
+            yield from places(mj, data, geom).tolist()
+
+
 def ends(model: Model, data: mujoco.MjData, bodies: Iterable[int]) -> list[Point]:
-    """The ends of the solid capsules of these bodies, seen from above [m].
+    """The ends of the solid capsules of these bodies and the corners of hulls, from above [m].
 
     Raises:
         InputError: there are none.
     """
-    found, mj, places, frames = [], model.mj, data.geom_xpos, data.geom_xmat
+    found, mj, centres, frames = [], model.mj, data.geom_xpos, data.geom_xmat
     for body in bodies:
         for geom, half, _ in _solid(mj, body):
-            x, y, _ = places[geom].tolist()
+            x, y, _ = centres[geom].tolist()
             across = frames[geom].tolist()
             dx, dy = half * across[2], half * across[5]
             found += [(x + dx, y + dy), (x - dx, y - dy)]
+        found += [(x, y) for x, y, _ in _corners(mj, data, body)]
     if not found:
         raise InputError("behaviour: a task is to balance over bodies that cannot stand")
     return found
@@ -54,7 +64,8 @@ def lifted(model: Model, state: State, body: int) -> bool:
         low = z - half * abs(float(state.data.geom_xmat[geom, 8])) - radius
         if low - model.ground.height(x, y) < CLEAR:
             return False
-    return True
+    corners = _corners(model.mj, state.data, body)
+    return all(z - model.ground.height(x, y) >= CLEAR for x, y, z in corners)
 
 
 def hull(points: list[Point]) -> list[Point]:

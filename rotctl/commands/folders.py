@@ -53,6 +53,9 @@ def add_inspect_model(commands: Commands) -> None:
         help="which body is what, as left_hip=leg_1, where its name does not say",
     )
     command.add_argument(
+        "--hulls", action="store_true", help="meshes touch by their convex hulls, not by capsules"
+    )
+    command.add_argument(
         "--proxies",
         action="append",
         default=[],
@@ -75,7 +78,8 @@ def inspect_model(arguments: argparse.Namespace) -> int:
     if out is not None:
         files.require_ending(out, ".yaml")
     name, roles = (out or arguments.file).stem, dict(arguments.map)
-    found = adopt(arguments.file, name, roles, proxies=tuple(arguments.proxies))
+    proxies = tuple(arguments.proxies)
+    found = adopt(arguments.file, name, roles, hulls=arguments.hulls, proxies=proxies)
     print(printable(adopted(found)))
     if out is not None:
         head = f"# {arguments.file.name} as rotctl inspect-model takes it.\n"

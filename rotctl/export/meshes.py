@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.report.shapes import triangles
 from rotctl.rotations import Array
 
 AROUND, DOWN = 20, 10  # segments of round shapes
@@ -41,12 +42,23 @@ def mesh_of(model: mujoco.MjModel, geom: int) -> Mesh | None:
         made = _grid(np.zeros((2, 2)), half)
     elif kind == _KIND.mjGEOM_HFIELD:
         made = _field(model, int(model.geom_dataid[geom]))
+    elif kind == _KIND.mjGEOM_MESH:
+        made = _hull(model, geom)
     else:
         return None
     flat = np.empty(9)
     mujoco.mju_quat2Mat(flat, model.geom_quat[geom])
     turn = flat.reshape(3, 3)
     return Mesh(made.vertices @ turn.T + model.geom_pos[geom], made.normals @ turn.T, made.corners)
+
+
+def _hull(model: mujoco.MjModel, geom: int) -> Mesh:
+    """A convex hull, flat from edge to edge."""
+    corners = triangles(model, geom).reshape(-1, 3)
+    sides = corners.reshape(-1, 3, 3)
+    normals = _unit(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]))
+    order = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
+    return Mesh(corners, np.repeat(normals, 3, axis=0), order)
 
 
 def _round(radius: float, half: float) -> Mesh:

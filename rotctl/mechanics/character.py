@@ -1,7 +1,7 @@
 """A character from numbers: bodies, joints and capsules of `conf/character/*.yaml` to MjSpec."""
 
 from dataclasses import field
-from typing import Annotated
+from typing import Annotated, Any
 
 import mujoco
 import numpy as np
@@ -24,6 +24,7 @@ from rotctl.settings import (
 Colour = tuple[Fraction, Fraction, Fraction]
 # Of a whole character, both sides counted: what a model may have out of a file, where a plate is
 # two capsules. Control has room for 250 hinges.
+MOST_CORNERS = 100  # of a hull
 MOST = {"bodies": 300, "joints": 200, "geoms": 4500, "pairs of geoms in self_collision": 20_000}
 
 
@@ -48,8 +49,9 @@ class Joint:
 class Geom:
     """A capsule from `start` to `end` [m], or a sphere where `end` is absent; radius `size` [m].
 
-    `mass` is a fraction of the character's mass. A geom of mass 0 is only seen: it
-    neither weighs nor touches anything.
+    With a `hull`, corners [m] in the body's frame, it is what is between them, and the sphere is
+    the ball around it. `mass` is a fraction of the character's mass. A geom of mass 0 is only
+    seen: it neither weighs nor touches anything.
     """
 
     name: str
@@ -57,6 +59,9 @@ class Geom:
     start: Vector
     mass: Fraction
     end: Vector | None = None
+    hull: Annotated[tuple[Vector, ...], Field(min_length=4, max_length=MOST_CORNERS)] | None = (
+        field(default=None, metadata=SPARSE)
+    )
     colour: Colour | None = None
 
 
@@ -156,7 +161,7 @@ def add_character(spec: mujoco.MjSpec, character: Character) -> None:
                 _add_joint(made, character, joint, side)
                 torque[joint.name + side] = joint.torque
             for geom in body.geoms:
-                _add_geom(made, character, body, geom, side)
+                _add_geom(spec, made, character, body, geom, side)
                 if geom.mass > 0:
                     geoms.setdefault(body.name, []).append((side, geom.name + side))
     for name in _joints_in_dof_order(spec):
@@ -223,23 +228,33 @@ def _add_joint(made: mujoco.MjsBody, character: Character, joint: Joint, side: s
 
 
 def _add_geom(
-    made: mujoco.MjsBody, character: Character, body: Body, geom: Geom, side: str
+    spec: mujoco.MjSpec,
+    made: mujoco.MjsBody,
+    character: Character,
+    body: Body,
+    geom: Geom,
+    side: str,
 ) -> None:
     solid = geom.mass > 0
+    shape: dict[str, Any]
+    if geom.hull is not None:
+        places = [x for corner in geom.hull for x in _mirrored(corner, side)]
+        spec.add_mesh(name=geom.name + side, uservert=places)
+        shape = {"type": mujoco.mjtGeom.mjGEOM_MESH, "meshname": geom.name + side}
+    elif geom.end is None:
+        shape = {"type": mujoco.mjtGeom.mjGEOM_SPHERE, "pos": _mirrored(geom.start, side)}
+    else:
+        ends = np.r_[_mirrored(geom.start, side), _mirrored(geom.end, side)]
+        shape = {"type": mujoco.mjtGeom.mjGEOM_CAPSULE, "fromto": ends}
     made.add_geom(
         name=geom.name + side,
-        type=mujoco.mjtGeom.mjGEOM_SPHERE if geom.end is None else mujoco.mjtGeom.mjGEOM_CAPSULE,
         size=[geom.size, 0.0, 0.0],
         mass=geom.mass * character.mass,
         contype=CHARACTER_CONTACT if solid else 0,
         conaffinity=GROUND_CONTACT if solid else 0,
         condim=3,
         rgba=[*(geom.colour or body.colour), 1.0],
-        **(
-            {"pos": _mirrored(geom.start, side)}
-            if geom.end is None
-            else {"fromto": np.r_[_mirrored(geom.start, side), _mirrored(geom.end, side)]}
-        ),
+        **shape,
     )
 
 
@@ -249,6 +264,10 @@ def _mirrored(position: Vector, side: str) -> list[float]:
 
 
 def _joints_in_dof_order(spec: mujoco.MjSpec) -> list[str]:
-    model = spec.compile()
+    try:
+        model = spec.compile()
+    except ValueError as error:  # corners of a hull may lie in a plane
+        reason = " ".join(str(error).split())
+        raise InputError(f"character: does not compile: {reason:.200}") from None
     hinges = np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_HINGE)
     return [model.joint(int(j)).name for j in hinges]

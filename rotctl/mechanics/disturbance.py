@@ -15,6 +15,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
 from rotctl.mechanics.changes import Load, Slip
+from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import ROOT_BODY, Model, body_id, is_character
 from rotctl.mechanics.onset import Onset, Time
 from rotctl.rotations import Array, cross, dot
@@ -229,6 +230,7 @@ class Air:
         solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
         self._geoms = np.flatnonzero(solid).tolist()
         self._capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
+        self._hulls = hulls(mj)
 
     def awaited(self, time: float) -> str:
         """See `Disturbance`."""
@@ -251,8 +253,14 @@ class Air:
                 continue
             axis = data.geom_xmat[geom].reshape(3, 3)[:, 2].copy()
             across = cross(axis, flow / speed)
-            radius, half = mj.geom_size[geom, :2] * (1.0, self._capsule[geom])
-            area = pi * radius**2 + 4.0 * radius * half * sqrt(dot(across, across))
+            if geom in self._hulls:  # the side of the box around it that faces the wind
+                x, y, z = mj.geom_size[geom].tolist()
+                frame = data.geom_xmat[geom].reshape(3, 3)
+                area = dot(np.abs(product(frame.T, flow / speed)), np.array([y * z, x * z, x * y]))
+                area *= 4.0
+            else:
+                radius, half = mj.geom_size[geom, :2] * (1.0, self._capsule[geom])
+                area = pi * radius**2 + 4.0 * radius * half * sqrt(dot(across, across))
             body = mj.geom_bodyid[geom]
             force = share * self._factor * area * speed * flow
             data.xfrc_applied[body, :3] += force

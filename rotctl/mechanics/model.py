@@ -18,6 +18,7 @@ from rotctl.errors import InputError
 from rotctl.meant import instead, meant
 from rotctl.mechanics import pair_limit
 from rotctl.mechanics.character import Character, add_character
+from rotctl.mechanics.hulls import hulls, places
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.stature import grown
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
@@ -256,7 +257,7 @@ def is_character(mj: mujoco.MjModel) -> NDArray[np.bool_]:
 def lowest_and_highest(
     mj: mujoco.MjModel, data: mujoco.MjData, chosen: NDArray[np.bool_]
 ) -> tuple[float, float]:
-    """Lowest and highest world z [m] over the chosen spheres and capsules."""
+    """Lowest and highest world z [m] over the chosen spheres, capsules and hulls."""
     along = np.where(
         mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE,
         np.abs(data.geom_xmat[:, 8]) * mj.geom_size[:, 1],
@@ -264,7 +265,11 @@ def lowest_and_highest(
     )
     reach = along + mj.geom_size[:, 0]
     z = data.geom_xpos[:, 2]
-    return float((z - reach)[chosen].min()), float((z + reach)[chosen].max())
+    low, high = z - reach, z + reach
+    for geom in hulls(mj):
+        heights = places(mj, data, geom)[:, 2]
+        low[geom], high[geom] = heights.min(), heights.max()
+    return float(low[chosen].min()), float(high[chosen].max())
 
 
 def body_ids(mj: mujoco.MjModel, names: Iterable[str], key: str) -> list[int]:

@@ -34,7 +34,7 @@ def triangles(length: float, reach: float, cell: float) -> float:
 
 
 def check(mj: mujoco.MjModel, character: str, terrain: str) -> None:
-    """See that no capsule or sphere can touch too much of a heightfield.
+    """See that no capsule, sphere or ball around a hull can touch too much of a heightfield.
 
     Raises:
         InputError: one can.
@@ -48,7 +48,9 @@ def check(mj: mujoco.MjModel, character: str, terrain: str) -> None:
         for geom in solid:
             capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
             length = 2.0 * float(mj.geom_size[geom, 1]) if capsule else 0.0
-            reach = float(mj.geom_size[geom, 0] + mj.geom_margin[geom] + mj.geom_margin[field])
+            hull = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
+            radius = mj.geom_rbound[geom] if hull else mj.geom_size[geom, 0]
+            reach = float(radius + mj.geom_margin[geom] + mj.geom_margin[field])
             most = triangles(length, reach, cell)
             if most > LIMIT:
                 raise InputError(

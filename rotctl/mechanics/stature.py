@@ -99,6 +99,7 @@ def _geom(geom: Geom, size: float) -> Geom:
         size=geom.size * size,
         start=_times(geom.start, size),
         end=None if geom.end is None else _times(geom.end, size),
+        hull=geom.hull and tuple(_times(corner, size) for corner in geom.hull),
     )
 
 

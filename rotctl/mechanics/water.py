@@ -12,7 +12,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from rotctl.linear import product
 from rotctl.mechanics.disturbance import Disturbance
+from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import ROOT_BODY, is_character
 from rotctl.mechanics.terrain import Basin
 from rotctl.rotations import Array, cross, dot
@@ -103,7 +105,7 @@ class Water:
 
 
 def _limb(mj: mujoco.MjModel, body: int) -> Limb | None:
-    """The box around a body's solid capsules and spheres; None where it has none."""
+    """The box around a body's solid shapes; None where it has none."""
     solid = np.flatnonzero((mj.geom_bodyid == body) & (mj.geom_contype > 0))
     if not len(solid):
         return None
@@ -112,6 +114,10 @@ def _limb(mj: mujoco.MjModel, body: int) -> Limb | None:
         radius, half = mj.geom_size[geom, :2].tolist()
         axis = np.zeros(9)
         mujoco.mju_quat2Mat(axis, mj.geom_quat[geom])
+        if geom in hulls(mj):
+            corners = mj.geom_pos[geom] + product(hulls(mj)[geom], axis.reshape(3, 3).T)
+            low, high = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
+            continue
         capsule = mj.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CAPSULE
         reach = radius + (half * np.abs(axis[2::3]) if capsule else 0.0)
         low = np.minimum(low, mj.geom_pos[geom] - reach)

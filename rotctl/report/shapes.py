@@ -20,6 +20,7 @@ _KINDS = {
     int(mujoco.mjtGeom.mjGEOM_ELLIPSOID): "ellipsoid",
     int(mujoco.mjtGeom.mjGEOM_CYLINDER): "cylinder",
     int(mujoco.mjtGeom.mjGEOM_BOX): "box",
+    int(mujoco.mjtGeom.mjGEOM_MESH): "hull",
 }
 
 
@@ -58,6 +59,14 @@ def bodies(model: mujoco.MjModel) -> list[list[dict[str, Any]]]:
         colour = [round(float(shade * part), 4) for part in colour[:3].clip(0.0, 1.0)]
         found[model.geom_bodyid[i] - 1].append(_shape(model, i) | {"colour": colour})
     return found
+
+
+def triangles(model: mujoco.MjModel, geom: int) -> Array:
+    """Corners (9 t,) of the triangles around a hull, three by three, in the geom's frame [m]."""
+    mesh = int(model.geom_dataid[geom])
+    first, sides = int(model.mesh_vertadr[mesh]), int(model.mesh_faceadr[mesh])
+    faces = model.mesh_face[sides : sides + int(model.mesh_facenum[mesh])]
+    return np.asarray(model.mesh_vert[first + faces].astype(float).ravel())
 
 
 def world(model: mujoco.MjModel) -> list[dict[str, Any]]:
@@ -101,7 +110,7 @@ def _shape(model: mujoco.MjModel, geom: int) -> dict[str, Any]:
     kind = _KINDS.get(int(model.geom_type[geom]), "sphere")
     shape = {
         "kind": kind,
-        "size": _rounded(model.geom_size[geom]),
+        "size": _rounded(triangles(model, geom) if kind == "hull" else model.geom_size[geom]),
         "position": _rounded(model.geom_pos[geom]),
         "quaternion": _rounded(np.roll(model.geom_quat[geom], -1)),
     }

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # What rotctl writes, and no more. Everything that reads a file (include, mesh, skin), runs
 # foreign code (plugin, extension), multiplies itself (replicate, composite, flexcomp) or
-# reserves memory (size) is left out.
+# reserves memory (size) is left out. A mesh is one of corners that are in the text.
 TAGS = frozenset(
     [
         "mujoco",
@@ -35,6 +35,7 @@ TAGS = frozenset(
         "material",
         "layer",
         "hfield",
+        "mesh",
         "worldbody",
         "body",
         "inertial",
@@ -52,6 +53,7 @@ TAGS = frozenset(
         "motor",
     ]
 )
+_OF_MESH = ("name", "vertex", "inertia")
 _FILES = ("file", "meshdir", "texturedir", "assetdir", "plugin")
 _SIZES = ("width", "height", "nrow", "ncol")  # of textures and height fields
 MAX_SIZE = 1024
@@ -62,6 +64,7 @@ MOST = {
     "bodies": 2000,
     "degrees of freedom": 1000,  # MuJoCo compiles with a mass matrix of this squared
     "heights and pixels": 2**20,  # of each, OpenGL keeps some 400 bytes
+    "numbers of corners": 100_000,
 }
 MAX_BYTES = 2**30  # of the model and its data
 
@@ -136,6 +139,9 @@ def _check(root: ElementTree.Element) -> None:
                 raise LogError(
                     f"has {name}={value!r:.40} in <{element.tag}>, valid: 0 to {MAX_SIZE}"
                 )
+        if element.tag == "mesh" and not {*element.attrib} <= {*_OF_MESH}:
+            raise LogError("has a <mesh> of more than its corners")
+        found["numbers of corners"] += len(element.get("vertex", "").split())
         found["elements"] += 1
         found["bodies"] += element.tag == "body"
         found["degrees of freedom"] += _freedom(element)

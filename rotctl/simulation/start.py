@@ -11,6 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
+from rotctl.mechanics.hulls import hulls, places
 from rotctl.mechanics.model import ROOT_BODY, Model, is_character
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
@@ -199,7 +200,8 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
 def _clearance(model: Model, data: mujoco.MjData) -> float:
     """How far the character can be lowered before it touches the ground [m]."""
     mj, ground = model.mj, model.ground
-    geoms = np.flatnonzero(is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0))
+    solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
+    geoms = np.flatnonzero(solid & (mj.geom_type != mujoco.mjtGeom.mjGEOM_MESH))
     length = mj.geom_size[geoms, 1] * (mj.geom_type[geoms] == mujoco.mjtGeom.mjGEOM_CAPSULE)
     half = length[:, None] * data.geom_xmat[geoms, 2::3]
     ends = np.stack((data.geom_xpos[geoms] + half, data.geom_xpos[geoms] - half), axis=1)
@@ -209,4 +211,7 @@ def _clearance(model: Model, data: mujoco.MjData) -> float:
             # A sphere on the plane that touches the ground below its centre.
             upright = float(ground.normal(x, y)[2])
             least = min(least, z - ground.height(x, y) - radius / upright)
+    for geom in hulls(mj):
+        for x, y, z in places(mj, data, geom).tolist():
+            least = min(least, z - ground.height(x, y))
     return float(least)

@@ -12,8 +12,17 @@ export function geometry({ kind, size }) {
   if (kind === "capsule") return upright(new THREE.CapsuleGeometry(a, 2 * b, 8, SEGMENTS));
   if (kind === "cylinder") return upright(new THREE.CylinderGeometry(a, a, 2 * b, 32));
   if (kind === "box") return new THREE.BoxGeometry(2 * a, 2 * b, 2 * c);
+  if (kind === "hull") return triangles(size);
   if (kind === "ellipsoid") return new THREE.SphereGeometry(1, 24, 16).scale(a, b, c);
   return new THREE.SphereGeometry(a, 24, 16);
+}
+
+/** Flat triangles, three corners each. */
+function triangles(corners) {
+  const made = new THREE.BufferGeometry();
+  made.setAttribute("position", new THREE.Float32BufferAttribute(corners, 3));
+  made.computeVertexNormals();
+  return made;
 }
 
 export function place(object, { position, quaternion }) {

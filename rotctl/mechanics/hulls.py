@@ -1,0 +1,26 @@
+"""Geoms that are convex hulls: where their corners are."""
+
+import mujoco
+import numpy as np
+
+from rotctl.linear import product
+from rotctl.rotations import Array
+from rotctl.same import kept
+
+
+@kept(most=8)
+def hulls(mj: mujoco.MjModel) -> dict[int, Array]:
+    """Geoms that are hulls, with their corners (k, 3) in the geom's frame [m]."""
+    found = {}
+    for geom in np.flatnonzero(mj.geom_type == mujoco.mjtGeom.mjGEOM_MESH).tolist():
+        mesh = int(mj.geom_dataid[geom])
+        first = int(mj.mesh_vertadr[mesh])
+        corners = mj.mesh_vert[first : first + int(mj.mesh_vertnum[mesh])]
+        found[geom] = corners.astype(float)
+    return found
+
+
+def places(mj: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Array:
+    """Where a hull's corners (k, 3) are in the world [m]."""
+    turned = product(hulls(mj)[geom], data.geom_xmat[geom].reshape(3, 3).T)
+    return np.asarray(data.geom_xpos[geom] + turned)

@@ -1,0 +1,135 @@
+"""Meshes that touch by their convex hulls."""
+
+from dataclasses import replace
+from itertools import product
+
+import mujoco
+import numpy as np
+import pytest
+from test_adopt import BRICK, stl, text
+
+from rotctl.adopting import adopt
+from rotctl.adopting.meshes import outermost
+from rotctl.behaviours import support
+from rotctl.checked import checked
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.export.meshes import mesh_of
+from rotctl.mechanics.character import Character
+from rotctl.mechanics.hulls import hulls, places
+from rotctl.mechanics.model import lowest_and_highest
+from rotctl.report import shapes
+from rotctl.run import make
+from rotctl.scenario import build
+from rotctl.written import to_dict
+
+HULLS = "character={kind: mjcf, file: robot.xml, collision: hulls}"
+FEET = ("foot_l", "foot_r")
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """A robot with bricks of 40, 10 and 6 cm for feet."""
+    (tmp_path / "foot.stl").write_bytes(stl(BRICK))
+    whole = text().replace(
+        '<geom type="box" size="0.1 0.04 0.03" pos="0.05 0 -0.03" mass="1"/>',
+        '<geom type="mesh" mesh="foot" pos="0 0 -0.06" mass="1"/>',
+    )
+    asset = '<asset><mesh name="foot" file="foot.stl"/></asset><worldbody>'
+    (tmp_path / "robot.xml").write_text(whole.replace("<worldbody>", asset))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def model(here):
+    return build(load([HULLS])).model
+
+
+def corners_of(model, data, name):
+    body = model.mj.body(name).id
+    (geom,) = (g for g in hulls(model.mj) if model.mj.geom_bodyid[g] == body)
+    return places(model.mj, data, geom)
+
+
+def test_a_brick_is_one_and_its_other_side_the_mirror_image(here, model):
+    (foot,) = (b for b in adopt(here / "robot.xml", "mine", hulls=True).character["bodies"]
+               if b["name"] == "foot")  # fmt: skip
+    (geom,) = foot["geoms"]
+    assert sorted(geom["hull"]) == sorted((BRICK - [0, 0, 0.06]).round(5).tolist())
+    data = mujoco.MjData(model.mj)
+    mujoco.mj_kinematics(model.mj, data)
+    left, right = (corners_of(model, data, foot) for foot in FEET)
+    assert sorted(map(tuple, left.round(5))) == sorted(map(tuple, (right * [1, -1, 1]).round(5)))
+    solid = model.mj.geom_contype > 0
+    assert lowest_and_highest(model.mj, data, solid)[0] == pytest.approx(0.0, abs=1e-5)
+
+
+def test_it_rests_on_corners_where_mujoco_says_they_are(model):
+    """Contacts of the engine against the corners that behaviours stand on."""
+    mj, data = model.mj, mujoco.MjData(model.mj)
+    data.qpos[:] = mj.qpos0
+    data.qpos[2] -= 1e-3
+    mujoco.mj_forward(mj, data)
+    touched = {tuple(c.pos[:2].round(3)) for c in data.contact}
+    sole = {(x, y) for x, y, z in corners_of(model, data, FEET[0]).round(3).tolist() if z < 0}
+    assert sole <= touched
+    stands = support.ends(model, data, [mj.body("foot_l").id])
+    assert {(round(x, 3), round(y, 3)) for x, y in stands} == sole
+
+
+@pytest.mark.parametrize("points", ["ball", "brick"])
+def test_the_outermost_points_are_nearly_the_whole_hull(points):
+    generator = np.random.default_rng(1)
+    cloud = generator.normal(size=(3000, 3))
+    if points == "ball":
+        cloud /= np.linalg.norm(cloud, axis=1, keepdims=True)
+    else:
+        cloud = np.array(list(product((-1, 1), (-2, 2), (-3, 3))) + (cloud.clip(-1, 1)).tolist())
+    kept = outermost(cloud)
+    assert len(kept) <= 98
+    ways = generator.normal(size=(500, 3))
+    ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+    reach, left = (cloud @ ways.T).max(axis=0), (kept @ ways.T).max(axis=0)
+    assert ((reach - left) / np.ptp(cloud, axis=0).max()).max() < 0.05
+
+
+def test_what_is_flat_has_the_corners_of_its_box():
+    sheet = np.random.default_rng(2).uniform(size=(50, 3)) * [1.0, 0.5, 0.0]
+    assert np.ptp(outermost(sheet), axis=0) == pytest.approx([1.0, 0.5, 1e-3], abs=0.1)
+    assert outermost(sheet)[:, 2].max() > 0.0
+
+
+def test_a_hull_without_an_inside_is_told():
+    plain = to_dict(load([]))["character"]
+    plain["bodies"][0]["geoms"][0]["hull"] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+    with pytest.raises(InputError, match="^character: does not compile: .* coplanar vertices"):
+        build(replace(load([]), character=checked(Character, plain)))
+
+
+@pytest.mark.parametrize(
+    "more", ["", "terrain=uneven", "disturbance=wind", "character.height=0.9", "terrain=pool"]
+)
+def test_it_moves_and_is_drawn_as_it_touches(here, more):
+    config = load([HULLS, "behaviour=forward_roll_push", "duration=0.5", *filter(None, [more])])
+    scenario = build(config)
+    assert make(config).summary["duration"] == pytest.approx(0.5)
+    mj = scenario.model.mj
+    (hull, *_) = hulls(mj)
+    drawn = np.array(shapes.triangles(mj, hull)).reshape(-1, 3)
+    exported = mesh_of(mj, hull)
+    assert len(np.unique(drawn.round(6), axis=0)) == 8
+    middle = exported.vertices.mean(axis=0)
+    assert ((exported.vertices - middle) * exported.normals).sum(axis=1).min() > 0, "outward"
+
+
+def test_wind_pushes_what_faces_it(here):
+    """Air from ahead on a still body: half the density times the faces of the boxes."""
+    model = build(load([HULLS])).model
+    from rotctl.mechanics.disturbance import Air
+
+    data = mujoco.MjData(model.mj)
+    mujoco.mj_forward(model.mj, data)
+    wind = Air(model.mj, np.array([3.0, 0.0, 0.0]), 1.0)
+    wind._geoms = list(hulls(model.mj))
+    assert wind.apply(data, 1.0)[:3] == pytest.approx([2 * 9.0 * 0.1 * 0.06, 0, 0], abs=1e-6)
