@@ -284,3 +284,49 @@ def test_without_a_model_or_rows_or_such_limbs_nothing_is_seen():
     for log, mj in ((roll(), None), (empty, adult()), (roll(), bare)):
         found = appearance.measure(log, mj, 1.0, PERIOD)
         assert np.isnan(list(vars(found).values())).all()
+
+
+# ---------------------------------------------------------------- over one shoulder
+
+
+ACROSS = (
+    ("forearm_r", slice(125, 130), 0.2 * WEIGHT),  # at its hand
+    ("elbow", slice(130, 136), 0.2 * WEIGHT),  # of the same forearm
+    ("chest", slice(138, 146), 0.8 * WEIGHT),
+    ("pelvis", slice(150, 160), 0.8 * WEIGHT),
+)
+
+
+def crossing(parts=ACROSS, shoulder=-0.1, hip=0.1):
+    """A revolution in which parts bear one after the other, at so much to the left [m]."""
+    named = [("forearm_r" if name == "elbow" else name, rows, up) for name, rows, up in parts]
+    log = roll(steps=240, turns=2.0, contacts=named, height=0.85)
+    skeleton = Skeleton(adult(), log["trajectory/qpos"])
+    for slot, (name, rows, _) in enumerate(parts):
+        aside = {"chest": shoulder, "pelvis": hip}.get(name)
+        if name == "elbow":
+            log["contacts/position"][rows, slot] = skeleton.origin(body("forearm_r"))[rows]
+        elif aside is not None:
+            place = skeleton.origin(body(name))[rows] + [0.0, aside, 0.0]
+            log["contacts/position"][rows, slot] = place
+    return 2.0 * looks(log).across  # nothing bears in the first of two revolutions
+
+
+def swapped(first, second):
+    parts = list(ACROSS)
+    rows = [part[1] for part in parts]
+    rows[first], rows[second] = rows[second], rows[first]
+    return [(name, at, up) for (name, _, up), at in zip(parts, rows, strict=True)]
+
+
+def test_across_the_back_is_from_an_arm_to_the_other_hip():
+    assert crossing() == 1.0
+    assert crossing(hip=-0.1) == 0.0, "down one side"
+    assert crossing(shoulder=0.1) == 0.0, "the other shoulder"
+    assert crossing(shoulder=0.0) == 0.0, "down the middle"
+    for pair in ((0, 1), (1, 2), (2, 3)):
+        assert crossing(swapped(*pair)) == 0.0, pair
+    for missing in range(4):
+        assert crossing([part for i, part in enumerate(ACROSS) if i != missing]) == 0.0
+    assert crossing([*ACROSS, ("head", slice(137, 139), 1.1 * WEIGHT)]) == 0.0, "over the crown"
+    assert crossing([*ACROSS, ("head", slice(137, 139), 0.5 * WEIGHT)]) == 1.0

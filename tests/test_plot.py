@@ -2,6 +2,7 @@
 
 import re
 
+import mujoco
 import numpy as np
 import pytest
 from logs import changed
@@ -15,6 +16,7 @@ from rotctl.report import plot as module
 from rotctl.report import stored_model
 from rotctl.report.plan import plan
 from rotctl.report.plot import plot
+from rotctl.report.prints import borne, outlines, prints
 from rotctl.report.replay import page
 from rotctl.report.rows import drawable, moderate
 from rotctl.report.signals import (
@@ -235,3 +237,49 @@ def test_a_plan_of_who_rolls_straight_on_has_no_way(log, tmp_path):
     assert "the way" not in words(out)
     with pytest.raises(InputError, match=r"plan\.txt"):
         plan(log, tmp_path / "plan.txt")
+
+
+# ---------------------------------------------------------------- prints
+
+
+def test_a_print_is_on_the_surface_of_what_bore_it(log):
+    """By MuJoCo's own geoms: a contact lies on one of its body's, to within the overlap."""
+    mj = stored_model.load(log)
+    body, place, load, row = borne(log, mj, ALL)
+    assert len(body) > 50
+    assert load.min() > 0.02
+    assert row.max() < log.steps
+    data = mujoco.MjData(mj)
+    mujoco.mj_kinematics(mj, data)
+    for which, there in list(zip(body, place, strict=True))[::25]:
+        spot = data.xpos[which] + data.xmat[which].reshape(3, 3) @ there
+        gaps = []
+        for geom in np.flatnonzero((mj.geom_bodyid == which) & (mj.geom_contype > 0)):
+            axis = data.geom_xmat[geom].reshape(3, 3)[:, 2]
+            half = mj.geom_size[geom, 1] if mj.geom_type[geom] == 3 else 0.0
+            along = np.clip((spot - data.geom_xpos[geom]) @ axis, -half, half)
+            off = np.linalg.norm(spot - data.geom_xpos[geom] - along * axis)
+            gaps.append(off - mj.geom_size[geom, 0])
+        assert min(np.abs(gaps)) < 0.03
+
+
+def test_outlines_are_as_tall_as_the_body():
+    from rotctl.scenario import model_of
+
+    mj = model_of(load([])).mj
+    data = mujoco.MjData(mj)
+    mujoco.mj_kinematics(mj, data)
+    found = np.concatenate(outlines(mj, data))
+    assert np.ptp(found[:, 1]) == pytest.approx(1.75, abs=0.02)
+    assert found[:, 0].min() == pytest.approx(-found[:, 0].max())
+
+
+def test_prints_are_drawn(log, tmp_path):
+    prints(log, tmp_path / "prints.svg")
+    assert "phase of the roll [rev]" in " ".join(words(tmp_path / "prints.svg"))
+    again = tmp_path / "again.svg"
+    prints(log, again)
+    assert again.read_bytes() == (tmp_path / "prints.svg").read_bytes()
+    assert main(["plot", str(log.path), "--from-behind", "--out", str(tmp_path / "p.png")]) == 0
+    with pytest.raises(InputError, match="valid: 0 to 0.983"):
+        prints(log, tmp_path / "x.png", 9.0, 9.5)

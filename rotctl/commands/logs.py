@@ -101,12 +101,18 @@ def add_plot(commands: Commands) -> None:
         "--out",
         type=Path,
         metavar="OUT.png|.svg|.pdf",
-        help="where to write it [plot.png or plan.png by the log]",
+        help="where to write it [plot.png, plan.png or prints.png by the log]",
     )
-    command.add_argument(
+    view = command.add_mutually_exclusive_group()
+    view.add_argument(
         "--from-above",
         action="store_true",
         help="plot where it rolled, beside the way that it was to follow",
+    )
+    view.add_argument(
+        "--from-behind",
+        action="store_true",
+        help="plot where on its body the ground bore it",
     )
     _add_window(command)
     command.set_defaults(command=plot, interrupted="an unfinished picture is not written")
@@ -117,9 +123,12 @@ def plot(arguments: argparse.Namespace) -> int:
     from rotctl.log import RunLog
     from rotctl.report.plan import plan
     from rotctl.report.plot import plot
+    from rotctl.report.prints import prints
 
     log = RunLog.open(log_file(arguments.log))
     name, drawn = ("plan.png", plan) if arguments.from_above else ("plot.png", plot)
+    if arguments.from_behind:
+        name, drawn = "prints.png", prints
     out = arguments.out or log.path.with_name(name)
     drawn(log, out, arguments.start, arguments.end)
     print(out)

@@ -6,6 +6,8 @@ from dataclasses import dataclass, fields
 import mujoco
 import numpy as np
 
+from rotctl.metrics import across
+from rotctl.metrics.across import BEARING, HAND, HEAD, SIDES
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
@@ -15,6 +17,7 @@ COLUMNS = (
     Column("head_share", "Head's share of the ground's upward impulse", ""),
     Column("head_peak", "Head's ground force, peak", "body weights"),
     Column("hands_bear", "Revolutions in which the hands bear as the head comes", ""),
+    Column("across", "Revolutions from hand over shoulder to the other hip", ""),
     Column("force_p99", "Ground force, 99th percentile", "body weights"),
     Column("force_peak", "Ground force, peak", "body weights"),
     Column("force_sustained", "Ground force, largest mean over a control step", "body weights"),
@@ -23,13 +26,10 @@ COLUMNS = (
     Column("knees_apart", "Knees apart, 95th percentile", "m"),
     Column("limb_overlap", "Deepest overlap of a limb and the trunk", "m"),
 )
-HEAD, SIDES = "head", ("_l", "_r")
 LIMBS = ("upper_arm", "forearm", "thigh", "shin")
 TRUNK = ("pelvis", "waist", "chest", HEAD)
 NEAR = 0.10  # [m] above the ground, where a head has come down
 BEFORE = 0.1  # [s] before that, in which hands should bear
-BEARING = 0.05  # [-] of the body's weight
-HAND = 0.07  # [m] from the middle of a hand: contacts of a forearm that are the hand's
 INVERTED = -0.5  # [-] the trunk's up along the world's: 120 degrees over
 EVERY = 4  # rows, of which one is looked at for overlap: limbs are slow
 
@@ -44,6 +44,7 @@ class Appearance:
         hands_bear: share of the whole revolutions in which hands bear 5 % of the weight, in the
             mean: of a forward roll over the 0.1 s before the head is 10 cm above the ground, of
             a backward roll while the trunk is upside down.
+        across: share of the whole revolutions that go over one shoulder, see `metrics.across`.
         force_p99, force_peak: of the whole ground force, as in `RollingMetrics` [body weights].
         force_sustained: its largest mean over a control step: as a force plate shows it whose
             signal is filtered at about 27 Hz, for control at 60 Hz [body weights].
@@ -56,6 +57,7 @@ class Appearance:
     head_share: float
     head_peak: float
     hands_bear: float
+    across: float
     force_p99: float
     force_peak: float
     force_sustained: float
@@ -112,7 +114,7 @@ def _over_the_head(
         if up[rows].min() < INVERTED
     ]
     if not found:
-        return dict.fromkeys(("hands_bear", "tuck_hip", "tuck_knee"), math.nan)
+        return dict.fromkeys(("hands_bear", "across", "tuck_hip", "tuck_knee"), math.nan)
     hands, height = _load_of_hands(log, mj, skeleton), _height_of_head(log, mj, skeleton)
     left = (axes[:, :, 1] * floats(log, "trajectory/trunk_axis")).sum(axis=1)
     forward = direction * float(np.median(left)) > 0.0
@@ -124,6 +126,7 @@ def _over_the_head(
         loads.append(float((hands[before] if forward else hands[rows][up[rows] < INVERTED]).mean()))
     lowest = [rows.start + int(np.argmin(up[rows])) for rows in found]
     return {
+        "across": across.share(log, mj, skeleton, _bodies(mj), _weight(mj), found),
         "hands_bear": sum(load >= BEARING * _weight(mj) for load in loads) / len(loads),
         "tuck_hip": _bend(log, "hip_y", lowest),
         "tuck_knee": _bend(log, "knee", lowest),
