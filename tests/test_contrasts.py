@@ -1,5 +1,7 @@
 """What the paper tried and rejected: each config asks the controller for what its name says."""
 
+import re
+
 import mujoco
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from rotctl import scenario
 from rotctl.behaviours.facing import FACING
 from rotctl.config import load
 from rotctl.control.kinds import KINDS
+from rotctl.errors import InputError
 from rotctl.mechanics.state import read
 from rotctl.rotations import rotate
 
@@ -93,3 +96,43 @@ def test_the_commanded_velocity_on_the_decline(name, climb):
     velocity = asked(made, state, now, "linear")["velocity"]
     assert velocity[2] == pytest.approx(climb)
     assert velocity @ velocity == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("behaviour", ["reference_roll", "backward_roll_2"])
+def test_the_clock_looks_poses_up_by_time_whatever_the_body_does(behaviour):
+    """AE and what is asked of the momenta are those of the body all the same."""
+    overrides = [f"behaviour={behaviour}", "behaviour.angular_velocity=0.75"]
+    by_phase, state, measured, _ = at_a_state(overrides)
+    made, state, now, _ = at_a_state([*overrides, "excursion=clock"])
+    after = made.behaviour.advance(now, state)
+    turn = 2.0 * np.pi * 0.75 / 60.0
+    assert after.excursion.phase - now.excursion.phase == pytest.approx(turn, rel=1e-12)
+    assert now.excursion.phase == pytest.approx(0.1 + turn, rel=1e-12)
+    assert measured.excursion.phase != pytest.approx(0.1 + turn, abs=0.01)
+    assert now.excursion.angle == pytest.approx(measured.excursion.angle, rel=1e-12)
+    for name in ("linear", "spin"):
+        assert asked(made, state, now, name) == asked(by_phase, state, measured, name)
+    shown = made.behaviour.command(now, state).pose_a
+    phase = by_phase.behaviour.command(
+        measured._replace(excursion=measured.excursion._replace(phase=0.1 + turn)), state
+    )
+    assert shown == pytest.approx(phase.pose_a, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (
+            ["behaviour=forward_roll"],
+            "behaviour.pace: waits at a phase of the body, excursion=clock goes by time",
+        ),
+        (
+            ["behaviour=stand"],
+            "excursion=clock: looks poses up by time, which behaviour=stand, "
+            "a list of stages, does not; choose excursion=oriented",
+        ),
+    ],
+)
+def test_the_clock_is_refused_where_it_would_do_nothing_or_nonsense(overrides, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        scenario.build(load([*overrides, "excursion=clock"]))

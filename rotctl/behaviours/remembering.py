@@ -63,6 +63,7 @@ class Remembering:
         self._axes = self._bearing.frame.axes
         self._course = settings.course.make() if settings.course is not None else None
         self._measured, self._period, self._pace = measured, period, pace
+        self._rate = math.tau * settings.angular_velocity
         given = settings.pace
         self._travel = given.travel if given is not None and given.keep == "speed" else 0.0
 
@@ -89,6 +90,8 @@ class Remembering:
         )
         turned = on.frame.turned(state.trunk_axes) + on.slope
         now = excursion.keep_phase(now, turned, self._period, self._measured.phase_time)
+        if self._measured.measure == "clock":
+            now = now._replace(phase=past.excursion.phase + self._rate * self._period)
         if self._measured.measure == "root":
             now = excursion.on_root(now, state.position[3:7], on.frame.orientation)
         memory = past._replace(excursion=now, axis=axis)

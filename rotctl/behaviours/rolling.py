@@ -85,6 +85,10 @@ class Rolling:
                 raise InputError(
                     f"behaviour.{part}: excursion=root controls the root's angular velocity"
                 )
+        if settings.pace and measured.measure == "clock":
+            raise InputError(
+                "behaviour.pace: waits at a phase of the body, excursion=clock goes by time"
+            )
         kinds = ("linear", "angular_momentum" if by_momentum else "spin")
         self._tasks = np.concatenate(
             [task(kind(k).number, gains[n], axes) for k, n in zip(kinds, self.tasks, strict=True)]
@@ -173,9 +177,9 @@ class Rolling:
     def compiled(self) -> CompiledRoll | None:
         """The same for C, which works on the same tasks; None where it has not what is asked.
 
-        That is `root`, and a course.
+        That is `root`, `clock`, and a course.
         """
-        if self._measured.measure == "root" or self._follows:
+        if self._measured.measure in ("root", "clock") or self._follows:
             return None
         on = self._bearing
         made = CompiledRoll(

@@ -11,7 +11,8 @@ the velocity of any one body, the integral drifts from the body slowly; it is pu
 the trunk's mean axis with a time constant.
 
 `root` is what the paper holds against AE: the orientation of the root body stands for that
-of the whole body. In-plane, all three are the plain integral.
+of the whole body. `clock` is what it holds against the phase: AE as `oriented`, but a roll's poses
+go by the time at the commanded rate. In-plane, all are the plain integral.
 
 The *phase* by which poses are looked up is the in-plane excursion too. For the same reason it
 drifts from the body, in 20 s by up to a fifth of a revolution, and then poses come too late or
@@ -35,7 +36,7 @@ from rotctl.rotations import (
 )
 from rotctl.settings import STRICT, Positive
 
-ExcursionName = Literal["oriented", "integral", "root"]
+ExcursionName = Literal["oriented", "integral", "root", "clock"]
 
 
 @validated(frozen=True, config=STRICT)
@@ -141,7 +142,7 @@ def on_root(excursion: Excursion, root: Array, at_phase_0: Array) -> Excursion:
 def error(excursion: Excursion, target: Array, rolling_axis: Array, name: ExcursionName) -> Array:
     """D(phi_hat, phi) of [Brown2013] eq. 4: what is missing to the target, (3,) [rad].
 
-    With `oriented` and `root` the part across the rolling axis is the rotation that brings the
+    Other than with `integral`, the part across the rolling axis is the rotation that brings the
     carried rolling axis back to the wanted one; the part along it is the plain difference.
     """
     difference = target - excursion.angle
