@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import is_dataclass
 from functools import cache
 from pathlib import Path
@@ -10,6 +10,7 @@ from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
+from pydantic.dataclasses import is_pydantic_dataclass, rebuild_dataclass
 
 from rotctl import documents, files
 from rotctl.errors import InputError
@@ -86,7 +87,16 @@ def clip(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
-adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)  # of a type, made once
+@cache
+def adapter(shape: Any) -> TypeAdapter[Any]:
+    """What checks data for a type.
+
+    A dataclass is completed first, else this and the making of an instance would each build a
+    validator, which takes longer than a short run.
+    """
+    if is_pydantic_dataclass(shape):
+        rebuild_dataclass(shape)
+    return TypeAdapter(shape)
 
 
 def _complaint(shape: type, data: Any, errors: list[Any]) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import (
     IN_FILES_ONLY,
     OF_REVOLUTIONS,
@@ -553,3 +554,12 @@ def test_a_run_of_less_than_a_revolution_says_nothing():
 
 def test_what_only_files_show_is_measured():
     assert set(IN_FILES_ONLY) < set(vars(GOOD))
+
+
+@pytest.mark.parametrize("q", [0, 50, 95, 99, 100])
+@pytest.mark.parametrize("shape", [(1,), (2,), (7,), (60,), (101,), (60, 29)])
+def test_percentiles_are_those_of_numpy(shape, q):
+    values = np.random.default_rng(5).normal(size=shape)
+    assert percentile(values, q) == np.percentile(values, q)
+    values.flat[-1] = np.nan
+    assert np.isnan(percentile(values, q))

@@ -9,6 +9,7 @@ import numpy as np
 from rotctl.metrics import across
 from rotctl.metrics.across import BEARING, HAND, HEAD, SIDES
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
+from rotctl.metrics.quantile import percentile
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
 from rotctl.same import kept
@@ -93,10 +94,10 @@ def measure(log: Arrays, mj: mujoco.MjModel | None, commanded: float, period: fl
     return Appearance(
         head_share=float(head.sum()) / upward if upward > 0.0 else math.nan,
         head_peak=head_peak / weight,
-        force_p99=float(np.percentile(force, 99)) / weight,
+        force_p99=percentile(force, 99) / weight,
         force_peak=float(floats(log, "contacts/ground_force_peak").max()) / weight,
         force_sustained=float(force.max()) / weight,
-        knees_apart=float(np.percentile(np.sqrt((knees**2).sum(axis=1)), 95)),
+        knees_apart=percentile(np.sqrt((knees**2).sum(axis=1)), 95),
         limb_overlap=_overlap(mj, skeleton),
         **_over_the_head(log, mj, skeleton, -1.0 if commanded < 0 else 1.0, period),
     )

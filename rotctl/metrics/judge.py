@@ -28,6 +28,7 @@ from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.orientation import OrientationCriteria
+from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria
 
@@ -122,8 +123,4 @@ def judge(
 def _torque(log: Arrays) -> float:
     """99th percentile of |torque| / limit over joints and time; NaN without rows."""
     torque = np.abs(floats(log, "trajectory/ctrl"))
-    return (
-        float(np.percentile(torque / floats(log, "model/torque_limit"), 99))
-        if len(torque)
-        else math.nan
-    )
+    return percentile(torque / floats(log, "model/torque_limit"), 99) if len(torque) else math.nan

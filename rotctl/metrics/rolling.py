@@ -10,6 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
 from rotctl.metrics.halts import STILL, Halts, going, unkept
+from rotctl.metrics.quantile import percentile
 from rotctl.metrics.smoothness import chatter, jerk, recovery, sticking
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
@@ -246,14 +247,14 @@ def measure(
         height_least=float(height.min()),
         height_most=float(height.max()),
         penetration=float(floats(log, "contacts/penetration").max()),
-        ground_force_p99=float(np.percentile(np.sqrt((force**2).sum(axis=1)), 99)),
+        ground_force_p99=percentile(np.sqrt((force**2).sum(axis=1)), 99),
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         jerk=jerk(log, period),
         chatter=chatter(log, period),
         sticking=sticking(log),
         **recovery(log, criteria, progress, axis, period),
-        torque_p99_fraction=float(np.percentile(fraction, 99)),
+        torque_p99_fraction=percentile(fraction, 99),
         solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period, rolls),
     )
