@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import is_dataclass
 from functools import cache
 from pathlib import Path
@@ -87,8 +87,7 @@ def clip(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
-@cache
-def adapter(shape: Any) -> TypeAdapter[Any]:
+def _adapter(shape: Any) -> TypeAdapter[Any]:
     """What checks data for a type.
 
     A dataclass is completed first, else this and the making of an instance would each build a
@@ -97,6 +96,9 @@ def adapter(shape: Any) -> TypeAdapter[Any]:
     if is_pydantic_dataclass(shape):
         rebuild_dataclass(shape)
     return TypeAdapter(shape)
+
+
+adapter: Callable[[Any], TypeAdapter[Any]] = cache(_adapter)  # of a type, made once
 
 
 def _complaint(shape: type, data: Any, errors: list[Any]) -> str:

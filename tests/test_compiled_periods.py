@@ -134,6 +134,23 @@ def test_what_c_has_not_is_made_in_python(both, overrides):
     assert both(*overrides, "duration=0.1")[1] == 0
 
 
+@pytest.mark.parametrize(
+    ("overrides", "python"),
+    [
+        (("disturbance=push", "disturbance.time=0.5", "disturbance.duration=0.2"), (14, 20)),
+        (("disturbance=push", "disturbance.time=1.98"), (1, 9)),  # to the end of the run
+        (("disturbance=push", "disturbance.time=0.3", "disturbance.phase=40"), (14, 90)),
+        (("disturbance=gust", "disturbance.time=0.5", "disturbance.duration=0.3"), (20, 26)),
+    ],
+    ids=lambda value: " ".join(map(str, value)),
+)
+def test_what_disturbs_is_left_to_python_while_it_does(both, overrides, python):
+    buffer, made = both(*overrides, "duration=2", "seed=1")
+    assert buffer.disturbance.wrench.any()
+    least, most = python
+    assert least <= 120 - made <= most
+
+
 def test_a_period_whose_solver_fails_is_left_to_the_reference(both, monkeypatch):
     """And C goes on after it; here it is made to doubt good solutions."""
     monkeypatch.setattr(compiled, "TOLERANCE", 1e-10)

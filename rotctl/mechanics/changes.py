@@ -119,6 +119,10 @@ class Change:
         """See `rotctl.mechanics.disturbance.Disturbance`."""
         return "" if self._done else self._told
 
+    def idle(self, time: float, period: float) -> bool:
+        """See `rotctl.mechanics.disturbance.Disturbance`."""
+        return False
+
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `rotctl.mechanics.disturbance.Disturbance`: no force acts."""
         self.remark = ""

@@ -50,6 +50,13 @@ class Disturbance(Protocol):
         """
         ...
 
+    def idle(self, time: float, period: float) -> bool:
+        """Whether the control step of that `period` that begins at `time` [s] can do without it.
+
+        Nothing acts in it, and nothing that acted before is left to be taken away.
+        """
+        ...
+
 
 @validated(frozen=True, config=STRICT)
 class Calm:
@@ -158,6 +165,10 @@ class Nothing:
         """See `Disturbance`."""
         return np.zeros(6)
 
+    def idle(self, time: float, period: float) -> bool:
+        """See `Disturbance`."""
+        return True
+
 
 @dataclass(frozen=True)
 class OnePush:
@@ -176,10 +187,17 @@ class OnePush:
     def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
         """See `Disturbance`; a step that holds a part of the push gets that part of it."""
         overlap = min(data.time + period, self.end) - max(data.time, self.begin)
-        force = self.force * (max(overlap, 0.0) / period)
+        if overlap <= 0.0:
+            data.xfrc_applied[self.body, :3] = 0.0
+            return np.zeros(6)
+        force = self.force * (overlap / period)
         data.xfrc_applied[self.body, :3] = force
         lever = data.xipos[self.body] - data.subtree_com[ROOT_BODY]
         return np.concatenate((force, cross(lever, force)))
+
+    def idle(self, time: float, period: float) -> bool:
+        """See `Disturbance`."""
+        return _outside(time, period, self.begin, self.end)
 
 
 class PushAtPhase:
@@ -203,6 +221,10 @@ class PushAtPhase:
             self._push = OnePush(push.body, push.force, data.time, data.time + lasting)
             self._begun = True
         return self._push.apply(data, period) if self._begun else np.zeros(6)
+
+    def idle(self, time: float, period: float) -> bool:
+        """See `Disturbance`; while it waits for its phase it is asked at each step."""
+        return self._push.idle(time, period) and (self._begun or time < self._push.begin)
 
 
 class Air:
@@ -268,3 +290,12 @@ class Air:
             total[:3] += force
             total[3:] += cross(data.geom_xpos[geom] - data.subtree_com[ROOT_BODY], force)
         return total
+
+    def idle(self, time: float, period: float) -> bool:
+        """See `Disturbance`."""
+        return _outside(time, period, self._begin, self._end)
+
+
+def _outside(time: float, period: float, begin: float, end: float) -> bool:
+    """Whether a control step at `time` is two before `begin`, or two behind `end` [s]."""
+    return time + 2.0 * period < begin or time - 2.0 * period > end

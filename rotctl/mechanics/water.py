@@ -62,6 +62,10 @@ class Water:
         """Of what disturbs besides."""
         return self._besides.awaited(time)
 
+    def idle(self, time: float, period: float) -> bool:
+        """See `rotctl.mechanics.disturbance.Disturbance`."""
+        return False
+
     def apply(self, data: mujoco.MjData, period: float, phase: float) -> Array:
         """See `Disturbance`."""
         data.xfrc_applied[:] = 0.0

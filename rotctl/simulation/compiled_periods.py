@@ -1,8 +1,9 @@
 """Whole control periods of a roll in one call of C each, from the state to its row of the log.
 
-Serves what most runs are: a roll in MuJoCo's own physics that control knows and nothing disturbs.
-It does what `Episode.step` and `record` do, to the same bits; where something is out of the
-ordinary (a solver that fails, a body that leaves the ground) C leaves a period to them.
+Serves what most runs are: a roll in MuJoCo's own physics that control knows, while nothing
+disturbs it. It does what `Episode.step` and `record` do, to the same bits; where something is out
+of the ordinary (a push, a solver that fails, a body that leaves the ground) C leaves a period to
+them.
 """
 
 import ctypes
@@ -37,8 +38,8 @@ def compiled_periods(
     behaviour, controller, stepper = parts.behaviour, parts.controller, parts.stepper
     roll = behaviour.compiled() if type(behaviour) is Rolling else None
     step = controller.step if type(controller) is Controller else None
-    plain = type(parts.disturbance) is Nothing and parts.senses.exact and parts.motors.prompt
-    if roll is None or step is None or not plain or type(stepper) is not MujocoStepper:
+    known = parts.senses.exact and parts.motors.prompt
+    if roll is None or step is None or not known or type(stepper) is not MujocoStepper:
         return None
     return CompiledPeriods(parts, stepper, step, roll, episode, buffer)
 
@@ -79,12 +80,15 @@ class CompiledPeriods:
         self._memory = run.memory
         self._address, self._kept = ctypes.addressof(run), (parts, roll, crowd, rows, buffer)
         self._height, self._trajectory = ground.height, buffer.trajectory
+        self._outside = None if type(parts.disturbance) is Nothing else parts.disturbance
+        self._period = 1.0 / parts.controller.settings.rate
         self._ready = False
 
     def follow(self, moment: Moment) -> None:
         """Go on from a control period that the episode made."""
-        self._ready = self._step.ask(moment.command, moment.decision.blend)
-        put(self._episode.memory, self._memory)
+        self._ready = self._calm() and self._step.ask(moment.command, moment.decision.blend)
+        if self._ready:
+            put(self._episode.memory, self._memory)
 
     def make(self, i: int) -> bool:
         """Make the control period of row `i`; False where that is left to the episode.
@@ -93,6 +97,10 @@ class CompiledPeriods:
             mujoco.FatalError: MuJoCo gave up.
         """
         if not self._ready:
+            return False
+        if not self._calm():
+            self._give_back()
+            self._ready = False
             return False
         if self._made(self._address, i) == FAILED:
             self._give_back()
@@ -109,6 +117,11 @@ class CompiledPeriods:
         remark = next(filter(None, self._crowds), "")
         self._crowds.clear()
         return remark
+
+    def _calm(self) -> bool:
+        """Whether nothing from outside acts in the control period that begins."""
+        outside = self._outside
+        return outside is None or outside.idle(self._episode.data.time, self._period)
 
     def _give_back(self) -> None:
         run, episode = self._run, self._episode
