@@ -325,6 +325,7 @@ def test_yaml_holds_the_whole_config():
     for body in whole["character"]["bodies"]:
         for joint in body["joints"]:  # of what a joint may have and has not, nothing is said
             assert {joint.pop(name) for name in ("damping", "armature", "spring")} == {None}
+        assert {geom.pop("hull") for geom in body["geoms"]} == {None}
     assert to_dict(config) == whole
 
 
@@ -346,7 +347,7 @@ def test_plain_data_is_checked_the_same_way(plain):
         InputError,
         match=r"^unknown key 'character\.bodies\[0\]\.geoms\[0\]\.sizes'; did you mean size\? "
         r"valid keys under character\.bodies\[0\]\.geoms\[0\]: "
-        r"name, size, start, mass, end, colour$",
+        r"name, size, start, mass, end, hull, colour$",
     ):
         check(data)
 
