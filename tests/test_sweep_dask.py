@@ -7,6 +7,7 @@ import subprocess
 import sys
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
+from threading import Thread
 
 import pytest
 import sweep_tasks
@@ -180,6 +181,22 @@ def test_a_scheduler_that_is_not_there_is_one_line(tmp_path, monkeypatch):
     with pytest.raises(InputError) as error:
         make_engine(None, address)
     assert str(error.value).startswith(f"--scheduler={address}: no Dask scheduler there: ")
+
+
+def test_who_answers_and_is_no_scheduler_is_told_in_one_line(tmp_path):
+    def answer(place, kept):
+        while True:
+            talk, _ = place.accept()
+            talk.sendall(b"HTTP/1.1 400 Bad Request\r\n\r\n")
+            kept.append(talk)
+
+    with socket.create_server(("127.0.0.1", 0)) as place:
+        Thread(target=answer, args=(place, []), daemon=True).start()
+        address = f"tcp://127.0.0.1:{place.getsockname()[1]}"
+        code, _, stderr = finish("sweep", "seed=0", "--out", tmp_path, "--scheduler", address)
+    assert code == 2
+    assert stderr.startswith(f"rotctl: --scheduler={address}: no Dask scheduler there: ")
+    assert stderr.count("\n") == 1  # and no traceback of a client that is closed as it goes
 
 
 @pytest.mark.slow

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 from uuid import uuid4
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 R = TypeVar("R")
 
-PATIENCE = 5.0  # [s] for a scheduler to answer
+PATIENCE = 4.0  # [s] for a scheduler to answer: with its start a command tells within five
 MOMENT = 0.2  # [s] between two tries to reach it
 TASK = 1.0  # [s] of work in a task
 MOST_TOGETHER = 128  # items of a task
@@ -45,11 +46,11 @@ def connect(address: str) -> "DaskEngine":
             f"--scheduler={address}: must be tcp://HOST:PORT or tls://HOST:PORT, "
             "such as tcp://127.0.0.1:8786"
         )
-    try:
-        from distributed import Client, Security
-    except ImportError:
-        raise InputError(NOT_INSTALLED) from None
-    _require_answer(address)
+    if find_spec("distributed") is None:
+        raise InputError(NOT_INSTALLED)
+    _require_answer(address)  # before Dask is imported, which takes as long again
+    from distributed import Client, Security
+
     security = Security()
     if address.startswith("tls://") and not security.get_connection_args("client")["ssl_context"]:
         raise InputError(f"--scheduler={address}: Dask's settings name no TLS files: {TLS}")
@@ -59,9 +60,11 @@ def connect(address: str) -> "DaskEngine":
     # the scheduler is lost is said below, in one line and not in a traceback.
     for name in ("distributed", "distributed.client", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
+    client = Client.__new__(Client)
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False, security=security)
+        Client.__init__(client, address, timeout=PATIENCE, set_as_default=False, security=security)
     except (OSError, ValueError, TypeError, RuntimeError, MemoryError) as error:
+        client.status = "closed"  # else it waits to be closed as it goes, and tells in a traceback
         reason = " ".join(str(error).split()) or type(error).__name__
         raise InputError(f"--scheduler={address}: no Dask scheduler there: {reason}") from None
     return DaskEngine(client, address)
