@@ -13,6 +13,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.launch import Launch, Lean, Whirl
+from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import Heading, Stepping
 from rotctl.control.task import Tasks
@@ -216,7 +217,9 @@ Aim = Annotated[
     | Heading
     | Lean
     | Launch
-    | Whirl,
+    | Whirl
+    | Poise
+    | Shift,
     Field(discriminator="law"),
 ]
 
@@ -237,6 +240,8 @@ SERVES: dict[type, tuple[str, ...]] = {
     Lean: ("linear",),
     Launch: ("linear",),
     Whirl: ("spin",),
+    Poise: ("linear",),
+    Shift: ("linear",),
 }
 """Kinds of task that an aim is for."""
 

@@ -1,4 +1,4 @@
-"""How a stage chooses the pose that is tracked: over phase, rise or turn, or as flight needs."""
+"""How a stage chooses the pose that is tracked: over phase, rise, turn or time, or by flight."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -173,3 +173,54 @@ class OverTurn:
         change = self.end - self.start
         pose, speeds = self.start + share * change, speed * change
         return np.array((pose, pose)), np.array((speeds, speeds))
+
+
+@validated(frozen=True, config=STRICT)
+class GlideSettings:
+    """From one pose to another in a time: what is in balance all the way waits for nothing.
+
+    Attributes:
+        start, end: poses by joint name [rad].
+        seconds: that it takes [s], from rest to rest.
+    """
+
+    start: dict[str, Turn]
+    end: dict[str, Turn]
+    seconds: Positive
+
+    def make(self, model: Model, key: str) -> "Glide":
+        """For one run.
+
+        Raises:
+            InputError: a name is no joint of the model.
+        """
+        start = make_pose(model, self.start, f"{key}.start")
+        end = make_pose(model, self.end, f"{key}.end")
+        return Glide(start, end, self.seconds)
+
+
+@dataclass(frozen=True)
+class Glide:
+    """Joints move without a jerk at either end.
+
+    Attributes:
+        start, end: (nu,) poses [rad].
+        seconds: from one to the other [s].
+    """
+
+    start: Array
+    end: Array
+    seconds: float
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """Nothing."""
+        return None
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        gone = min((scene.state.time - scene.begin.time) / self.seconds, 1.0)
+        share = gone**3 * (10.0 - 15.0 * gone + 6.0 * gone * gone)
+        rate = 30.0 * (gone * (1.0 - gone)) ** 2 / self.seconds
+        change = self.end - self.start
+        pose, speed = self.start + share * change, rate * change
+        return np.array((pose, pose)), np.array((speed, speed))

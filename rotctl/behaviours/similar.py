@@ -16,10 +16,11 @@ from rotctl.behaviours.flight import FlightSettings
 from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pacing import PaceSettings
-from rotctl.behaviours.posing import RiseSettings
+from rotctl.behaviours.poising import Poise, Shift
+from rotctl.behaviours.posing import GlideSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
-from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Still
+from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Over, Still
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")
@@ -62,6 +63,7 @@ UNITS: Units = {
     Airborne: all_of(time, "seconds"),
     Still: all_of(time, "seconds"),
     Leaves: all_of(time, "after"),
+    Over: all_of(length, "within") | all_of(speed, "speed"),
     Launched: all_of(speed, "up") | all_of(length, "height"),
     Ground: all_of(length, "height"),
     Capture: all_of(length, "margin", "height", "sink", "lunge_margin", "lunge_most")
@@ -77,7 +79,10 @@ UNITS: Units = {
     | all_of(speed, "forward", "up")
     | all_of(time, "soonest"),
     Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
+    Poise: all_of(length, "margin") | all_of(rate, "rate"),
+    Shift: all_of(length, "most", "ahead") | all_of(rate, "rate"),
     RiseSettings: all_of(length, "height"),
+    GlideSettings: all_of(time, "seconds"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
     PaceSettings: all_of(length, "travel", "ahead")

@@ -233,7 +233,9 @@ class Staged:
             return stage.rise.make(self._model, f"{key}.rise")
         if stage.turn:
             return stage.turn.make(self._model, f"{key}.turn")
-        assert stage.poses  # one of the four is there
+        if stage.glide:
+            return stage.glide.make(self._model, f"{key}.glide")
+        assert stage.poses  # one of the five is there
         return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:

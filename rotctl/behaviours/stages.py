@@ -7,7 +7,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aims import SERVES, Aim
 from rotctl.behaviours.flight import FlightSettings
-from rotctl.behaviours.posing import RiseSettings, TurnSettings
+from rotctl.behaviours.posing import GlideSettings, RiseSettings, TurnSettings
 from rotctl.behaviours.until import Until
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
@@ -59,6 +59,7 @@ class Stage:
         poses: key poses over the phase; or in their place
         rise: poses over the height of the centre of mass, or
         turn: over how far it has turned, or
+        glide: over time, or
         flight: poses that bring the body to its landing, see `rotctl.behaviours.flight`.
         tasks: by name, beside those of every stage.
         until: what ends it; nothing for the last stage alone.
@@ -74,6 +75,7 @@ class Stage:
     poses: Poses | None = None
     rise: RiseSettings | None = None
     turn: TurnSettings | None = None
+    glide: GlideSettings | None = None
     flight: FlightSettings | None = None
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     until: Until | None = None
@@ -85,17 +87,19 @@ class Stage:
     toes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        given = [law for law in (self.poses, self.rise, self.turn, self.flight) if law is not None]
-        if len(given) != 1:
+        laws = (self.poses, self.rise, self.turn, self.glide, self.flight)
+        given = sum(law is not None for law in laws)
+        if given != 1:
             raise ValueError(
-                f"the stage {self.name!r} must have one of poses, rise, turn and flight, "
-                f"not {len(given)}"
+                f"the stage {self.name!r} must have one of poses, rise, turn, glide and flight, "
+                f"not {given}"
             )
 
 
 def mirrored(stage: Stage, model: Model) -> Stage:
     """The same with the mirror images of its poses, for a turn the other way."""
     poses, rise, turn, flight = stage.poses, stage.rise, stage.turn, stage.flight
+    glide = stage.glide
     if poses:
         other = None if poses.b is None else _over_phase(model, poses.b)
         poses = Poses(_over_phase(model, poses.a), other)
@@ -106,6 +110,9 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         start, end = mirrored_angles(model, turn.start), mirrored_angles(model, turn.end)
         first, last = turn.angles
         turn = replace(turn, start=start, end=end, angles=(-first, -last))
+    if glide:
+        start, end = mirrored_angles(model, glide.start), mirrored_angles(model, glide.end)
+        glide = replace(glide, start=start, end=end)
     if flight:
         tuck, stretch = (mirrored_angles(model, a) for a in (flight.tuck, flight.stretch))
         shapes = {name: mirrored_angles(model, a) for name, a in flight.shapes.items()}
@@ -116,7 +123,7 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         if flight.feet:
             pose = mirrored_angles(model, flight.feet.pose)
             flight = replace(flight, feet=replace(flight.feet, pose=pose))
-    return replace(stage, poses=poses, rise=rise, turn=turn, flight=flight)
+    return replace(stage, poses=poses, rise=rise, turn=turn, glide=glide, flight=flight)
 
 
 def _over_phase(model: Model, pose: Mapping[str, Angle]) -> dict[str, Angle]:

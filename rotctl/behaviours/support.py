@@ -55,6 +55,20 @@ def ends(model: Model, data: mujoco.MjData, bodies: Iterable[int]) -> list[Point
     return found
 
 
+def lowest_end(model: Model, data: mujoco.MjData, body: int) -> tuple[float, float, float]:
+    """Of the ends of a body's solid capsules and spheres the lowest [m]."""
+    low, found = inf, (0.0, 0.0, 0.0)
+    for geom, half, radius in _solid(model.mj, body):
+        x, y, z = data.geom_xpos[geom].tolist()
+        across = data.geom_xmat[geom].tolist()
+        for along in (half, -half):
+            height = z + along * across[8] - radius
+            if height < low:
+                low = height
+                found = (x + along * across[2], y + along * across[5], height)
+    return found
+
+
 def lifted(model: Model, state: State, body: int) -> bool:
     """Whether nothing of a body touches the ground, and all of it is higher than `CLEAR`."""
     if body in state.contacts.body.tolist():

@@ -8,10 +8,12 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.launch import leaning
+from rotctl.behaviours.poising import borne_at
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
 from rotctl.mechanics.terrain.pool import Basin
+from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 
@@ -232,6 +234,35 @@ class Leaves:
         return settled and not Touches("touches", self.bodies).met(scene)
 
 
+@validated(frozen=True, config=STRICT)
+class Over:
+    """The centre of mass is over the middle of these bodies' contacts, along the way, and calm.
+
+    Attributes:
+        within: so near to it [m].
+        speed: no faster than this [m/s].
+    """
+
+    kind: Literal["over"]
+    bodies: tuple[str, ...]
+    within: Positive
+    speed: Positive
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        if not Touches("touches", self.bodies).met(scene):
+            return False
+        momentum, (fx, fy, _) = scene.state.momentum, scene.axes[0].tolist()
+        (x, y, _), (mx, my) = momentum.com.tolist(), borne_at(scene, self.bodies)
+        off = fx * (x - mx) + fy * (y - my)
+        speed = dot(momentum.com_velocity, scene.axes[0])
+        return abs(off) < self.within and abs(speed) < self.speed
+
+
 Until = Annotated[
     After
     | Turned
@@ -243,6 +274,7 @@ Until = Annotated[
     | Enters
     | Tilted
     | Launched
-    | Leaves,
+    | Leaves
+    | Over,
     Field(discriminator="kind"),
 ]

@@ -4,6 +4,7 @@ import math
 from dataclasses import asdict, replace
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
@@ -16,9 +17,27 @@ from rotctl.settings import STRICT, Positive
 COLUMNS = (
     Column("touched", "What came down, and when [s]", ""),
     Column("bears_most", "Largest upward force of the ground, mean of a control step", "N"),
+    Column("held", "Longest time held upside down", "s"),
 )
 
 Group = Annotated[tuple[str, ...], Field(min_length=1, max_length=20)]
+
+
+@validated(frozen=True, config=STRICT)
+class HeldCriteria:
+    """When a body counts as held upside down.
+
+    Attributes:
+        bodies: that alone touch the ground.
+        seconds: so long at least, without a break [s].
+        lean: of the trunk, off upside down [deg].
+        height: least height of the centre of mass, as a share of that at the start: legs are up.
+    """
+
+    bodies: Group
+    seconds: Positive
+    lean: Positive
+    height: Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -40,6 +59,7 @@ class AcrobaticCriteria:
     turn: Positive
     landing: StandingCriteria
     about: Literal["left", "up"] = "left"
+    held: HeldCriteria | None = None
     description: str = ""
 
 
@@ -65,7 +85,24 @@ def judge(
     up = floats(log, "contacts/force_realised")[:, :, 2].sum(axis=1)
     bears = float(up.max()) if len(up) else math.nan
     found = {"revolved": revolved, "bears_most": bears, "touched": told(events)}
+    if criteria.held:
+        found["held"] = held = longest_held(log, criteria.held, period)
+        if not reason and held < criteria.held.seconds - 1e-6:
+            wanted = criteria.held.seconds
+            reason = f"was held upside down for {held:.2f} s, is to be for {wanted:g}"
     return {**asdict(stood), **found}, reason
+
+
+def longest_held(log: Arrays, criteria: HeldCriteria, period: float) -> float:
+    """Longest time upside down on the hands alone [s]; `period` is the control's [s]."""
+    down = -floats(log, "trajectory/trunk_axes")[:, 2, 2]
+    height = floats(log, "trajectory/com")[:, 2] - floats(log, "trajectory/ground_height")
+    borne = np.asarray(log["contacts/count"]) > 0
+    alone = borne & ~standing.on_others(log, criteria.bodies)
+    straight = down > math.cos(math.radians(criteria.lean))
+    kept = alone & straight & (height > criteria.height * height[:1])
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(int)))
+    return float((edges[1::2] - edges[::2]).max(initial=0)) * period
 
 
 def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
