@@ -98,14 +98,21 @@ def test_water_is_lower_than_the_platform_and_stops_nobody():
 
 
 @pytest.mark.parametrize(
-    ("behaviour", "target", "height"), [("dive_forward", 540, 10), ("dive_backward", -180, 3)]
+    ("behaviour", "target", "height", "shape"),
+    [
+        ("dive_forward", 540, 10, "tuck"),
+        ("dive_forward", 900, 10, "tuck"),
+        ("dive_backward", -180, 3, "tuck"),
+        ("dive_backward", -540, 10, "pike"),
+    ],
 )
-def test_other_dives_enter_straight_too(behaviour, target, height):
+def test_other_dives_enter_straight_too(behaviour, target, height, shape):
     """Of two starts at least one; of others, nearly all."""
     entered = 0
     for seed in (2002, 2003):
-        turns = [f"behaviour.target_excursion={target}", f"terrain.height={height}"]
-        config = load([f"behaviour={behaviour}", f"seed={seed}", "duration=4.5", *turns])
+        turns = [f"behaviour.target_excursion={target}", f"behaviour.shape={shape}"]
+        way = [f"behaviour={behaviour}", f"terrain.height={height}", "duration=4.5"]
+        config = load([*way, *turns, f"seed={seed}"])
         log = in_memory(build(config))[0].arrays()
         entered += not dive.judge(log, config.criteria, float(target), PERIOD)[1]
     assert entered >= 1

@@ -5,9 +5,11 @@ import numpy as np
 import pytest
 from flights import ARCHED, HEAD_FIRST, LEFT, LONG, TUCK, flier, fly, spawn
 
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.shape import Shapes
 from rotctl.motion import make_pose
+from rotctl.scenario import build
 
 
 @pytest.fixture(scope="module")
@@ -40,6 +42,19 @@ def test_inertia_of_a_shape_is_that_of_its_bodies(dive, pose):
     found = Shapes(dive.model).inertia(angles, LEFT)
     armature = 0.5  # [kg m2] the joints' own, which moves with them and is no body's
     assert found == pytest.approx(inertia_by_sum(dive.model, angles)[1, 1], abs=armature)
+
+
+@pytest.mark.parametrize("behaviour", ["dive_forward", "dive_backward"])
+@pytest.mark.parametrize("shape", ["tuck", "pike"])
+def test_a_diver_spins_about_the_axis_of_greatest_inertia(behaviour, shape):
+    """About the middle axis, Euler, whatever is off grows: of old tucks that was the left one."""
+    diver = build(load([f"behaviour={behaviour}", f"behaviour.shape={shape}"]))
+    law = diver.behaviour._laws["flight"]
+    for amount, more in ((0.6, 1.1), (0.7, 1.1), (0.8, 1.1), (0.9, 1.1), (1.0, 1.0)):
+        inertia = inertia_by_sum(diver.model, law.pose(amount, law._usual))
+        others = np.linalg.eigvalsh(inertia[np.ix_([0, 2], [0, 2])])
+        assert np.abs(inertia[1, [0, 2]]).max() < 1e-6  # both sides are alike: left is a main axis
+        assert inertia[1, 1] > more * others.max(), amount
 
 
 def test_a_change_of_shape_turns_a_body_that_has_no_momentum(dive):

@@ -39,6 +39,13 @@ def refusal(*overrides):
         ),
         (
             "dive_forward",
+            1260,
+            10,
+            "to turn so far in 1.79 s asks for 47 kg m2/s in the tightest shape, and legs give at "
+            "most 43; 900 is possible here",
+        ),
+        (
+            "dive_forward",
             360,
             10,
             "it would not come down on its forearm; half a turn less or more: 180 or 540",
