@@ -134,7 +134,7 @@ def require_fit(config: Config, model: Model) -> None:
         InputError: criteria judge other motions or bodies, or what disturbs comes too late.
     """
     behaviour, judged = config.behaviour, config.criteria.kind
-    wanted = ["standing", "landing", "flip", "dive", "acrobatic", "orientation"]
+    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
     if isinstance(behaviour, RollingSettings):
         wanted = ["rolling"] if behaviour.finish is None else ["finish"]
     if judged not in wanted:

@@ -29,7 +29,8 @@ NOT_READ = (
 )
 
 STARTS = (
-    "falling, long, poised, prone, rest, standing, still, supine, symmetric, tucked, tucked_back"
+    "falling, long, poised, prone, rest, side, standing, still, supine, symmetric, tucked, "
+    "tucked_back"
 )
 
 

@@ -169,6 +169,10 @@ CASES = {
         },
         seconds=0.8,
     ),
+    "turning onto the front": Case(
+        ("behaviour=get_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
+    ),
+    "reaching": Case(("behaviour=get_up",), r"behaviour\.stages\.1\.reach\.seconds"),
     "landing": Case(("behaviour=land",), r"start\.falling\..*", seconds=0.1),
 }
 

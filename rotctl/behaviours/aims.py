@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours import support
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.poising import Poise, Shift
@@ -18,7 +19,7 @@ from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import Heading, Stepping
 from rotctl.control.task import Tasks
 from rotctl.mechanics import excursion
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import Model, body_ids
 from rotctl.rotations import about_up, advance, advanced, dot, rotation_between
 from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
@@ -178,6 +179,71 @@ class Ground:
 
 
 @validated(frozen=True, config=STRICT)
+class Above:
+    """The centre of mass comes over the middle of bodies that may bear nothing yet: linear.
+
+    Attributes:
+        bodies: seen from above; a name without a side stands for both sides.
+        ahead: of their middle, along the way [m].
+        height: over the ground [m].
+        most: of what is missing, that the spring is given at once [m].
+    """
+
+    law: Literal["above"]
+    bodies: tuple[str, ...]
+    height: Positive
+    most: Positive
+    ahead: Finite = 0.0
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        model, state, com = scene.model, scene.state, scene.state.momentum.com
+        bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+        x, y = support.middle(support.ends(model, state.data, bodies))
+        missing = np.array([x, y, scene.floor + self.height]) + self.ahead * scene.axes[0] - com
+        far = sqrt(dot(missing, missing))
+        task["target"][:3] = com + min(1.0, self.most / far if far else 1.0) * missing
+
+
+@validated(frozen=True, config=STRICT)
+class Opposite:
+    """A point is put on the ground where the capture point lies between it and a body: point.
+
+    A foot that comes down there leaves nothing to tip the body to a side of the line from the one
+    support to the other, however narrow both are.
+
+    Attributes:
+        body: the other support.
+        ahead: of the capture point, as seen from that body [m].
+        height: of the point above the ground when its body stands [m].
+    """
+
+    law: Literal["opposite"]
+    body: str
+    ahead: NonNegative
+    height: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        model, state = scene.model, scene.state
+        other = body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
+        ox, oy = support.middle(support.ends(model, state.data, other))
+        x, y = support.capture_point(state, support.pendulum_rate(model, state))
+        far = sqrt((x - ox) ** 2 + (y - oy) ** 2)
+        share = self.ahead / far if far else 0.0
+        px, py = x + share * (x - ox), y + share * (y - oy)
+        task["target"][:3] = [px, py, model.ground.height(px, py) + self.height]
+
+
+@validated(frozen=True, config=STRICT)
 class Turn:
     """Turn to the behaviour's target excursion, and keep to its axis: spin.
 
@@ -211,6 +277,8 @@ Aim = Annotated[
     | Pose
     | Ground
     | Turn
+    | Above
+    | Opposite
     | Capture
     | Lunge
     | Stepping
@@ -228,6 +296,8 @@ SERVES: dict[type, tuple[str, ...]] = {
     Upright: ("attitude",),
     Ground: ("point",),
     Turn: ("spin",),
+    Above: ("linear",),
+    Opposite: ("point",),
     Capture: ("linear",),
     Lunge: ("spin",),
     Stepping: ("point",),

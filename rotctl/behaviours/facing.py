@@ -13,6 +13,10 @@ UP = np.array([0.0, 0.0, 1.0])
 
 TurnAbout = Literal["left", "up"]
 
+Lying = Literal["across", "along"]
+"""How one who lies is faced: across the way, head to the left, or along it, where its face goes as
+it comes up: feet ahead on the back, head ahead on the front."""
+
 
 @dataclass(frozen=True)
 class Facing:
@@ -88,3 +92,18 @@ def frame_of(about: RollAbout, heading: float, turn_about: TurnAbout = "left") -
         column=int(np.abs(axis).argmax()),
         sign=float(axis.sum()),
     )
+
+
+def lying(how: Lying, trunk_axes: Array) -> Frame:
+    """The frame of one who lies as it lies there.
+
+    Args:
+        how: `across`, to turn about the long axis, or `along`, to turn about left.
+        trunk_axes: (3, 3) columns are the trunk's front, left and up, world.
+    """
+    x, y = trunk_axes[:2, 2].tolist()
+    head = math.degrees(math.atan2(y, x))
+    if how == "across":
+        return frame_of("head", head - 90.0)
+    prone = float(trunk_axes[2, 0]) < 0.0
+    return frame_of("left", head if prone else head + 180.0)

@@ -224,3 +224,45 @@ class Glide:
         change = self.end - self.start
         pose, speed = self.start + share * change, rate * change
         return np.array((pose, pose)), np.array((speed, speed))
+
+
+@validated(frozen=True, config=STRICT)
+class ReachSettings:
+    """From the pose that a stage begins in to another one.
+
+    Attributes:
+        pose: by joint name [rad].
+        seconds: that it takes, from rest to rest [s].
+    """
+
+    pose: dict[str, Turn]
+    seconds: Positive
+
+    def make(self, model: Model, key: str) -> "Reach":
+        """For one run.
+
+        Raises:
+            InputError: a name is no joint of the model.
+        """
+        return Reach(make_pose(model, self.pose, f"{key}.pose"), self.seconds)
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Joints go to a pose (nu,) [rad] in a time [s], smoothly."""
+
+    end: Array
+    seconds: float
+
+    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+        """Nothing."""
+        return None
+
+    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        gone = min((scene.state.time - scene.begin.time) / self.seconds, 1.0)
+        share = gone * gone * (3.0 - 2.0 * gone)
+        change = self.end - scene.begin.angles
+        pose = scene.begin.angles + share * change
+        speed = 6.0 * gone * (1.0 - gone) / self.seconds * change
+        return np.array((pose, pose)), np.array((speed, speed))

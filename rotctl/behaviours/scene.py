@@ -16,6 +16,7 @@ class Begin(NamedTuple):
         time: [s].
         com: (3,) centre of mass [m].
         place, orientation: (nbody, 3) [m] and (nbody, 4) of all bodies.
+        angles: (nu,) of the joints [rad].
         excursion: AE and phase.
     """
 
@@ -23,6 +24,7 @@ class Begin(NamedTuple):
     com: Array
     place: Array
     orientation: Array
+    angles: Array
     excursion: Excursion
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
-from rotctl.behaviours.aims import Ground
+from rotctl.behaviours.aims import Above, Ground, Opposite
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight import FlightSettings
@@ -17,10 +17,10 @@ from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pacing import PaceSettings
 from rotctl.behaviours.poising import Poise, Shift
-from rotctl.behaviours.posing import GlideSettings, RiseSettings
+from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
-from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Over, Still
+from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Low, Over, Still
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")
@@ -83,6 +83,10 @@ UNITS: Units = {
     Shift: all_of(length, "most", "ahead") | all_of(rate, "rate"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),
+    ReachSettings: all_of(time, "seconds"),
+    Above: all_of(length, "ahead", "height", "most"),
+    Opposite: all_of(length, "ahead", "height"),
+    Low: all_of(length, "height"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
     PaceSettings: all_of(length, "travel", "ahead")

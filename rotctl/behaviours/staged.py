@@ -23,7 +23,7 @@ from rotctl.behaviours.behaviour import (
     gains_of,
     pose_gains_of,
 )
-from rotctl.behaviours.facing import TurnAbout, frame_of
+from rotctl.behaviours.facing import Frame, TurnAbout, frame_of, lying
 from rotctl.behaviours.flight import TUCK, Aloft, Flight
 from rotctl.behaviours.posing import OverPhase, PoseLaw
 from rotctl.behaviours.scene import Begin, Scene, Step
@@ -39,7 +39,7 @@ from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import SIDES, Model, body_ids
 from rotctl.mechanics.state import State
 from rotctl.motion import RollAbout, make_pose_pair
-from rotctl.rotations import Array, advance
+from rotctl.rotations import Array, advance, rotation_between
 from rotctl.settings import STRICT, Finite
 
 SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
@@ -77,6 +77,11 @@ class StagedSettings:
             raise ValueError("the first stage must have poses: a run starts in them")
         if self.shape != TUCK and not any(stage.flight for stage in self.stages):
             raise ValueError(f"shape={self.shape}: nothing flies here")
+        names = [stage.name for stage in self.stages]
+        for stage in self.stages:
+            if stage.otherwise and stage.otherwise.stage not in names:
+                there = ", ".join(names)
+                raise ValueError(f"otherwise: no stage {stage.otherwise.stage!r}; valid: {there}")
         for stage in self.stages[:-1]:
             if stage.until is None:
                 raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
@@ -104,8 +109,9 @@ class StagedMemory(NamedTuple):
     Attributes:
         stage: its number.
         begin: of that stage.
-        first: excursion at the start of the run.
+        first: excursion at the start of the run, or of the frame.
         excursion: now.
+        frame: of the way.
         airborne, still: for how long [s].
         aloft: of the present stage's flight.
         step: with a foot.
@@ -115,6 +121,7 @@ class StagedMemory(NamedTuple):
     begin: Begin
     first: Excursion
     excursion: Excursion
+    frame: Frame
     airborne: float = 0.0
     still: float = 0.0
     aloft: Aloft | None = None
@@ -174,6 +181,8 @@ class Staged:
                 found.update(dict.fromkeys(_names(model, name, wanted)))
             if stage.until:
                 stage.until.check(model)
+            if stage.otherwise:
+                stage.otherwise.when.check(model)
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
         self._parts = [self._part(stage) for stage in self._stages]
@@ -235,7 +244,9 @@ class Staged:
             return stage.turn.make(self._model, f"{key}.turn")
         if stage.glide:
             return stage.glide.make(self._model, f"{key}.glide")
-        assert stage.poses  # one of the five is there
+        if stage.reach:
+            return stage.reach.make(self._model, f"{key}.reach")
+        assert stage.poses  # one of the six is there
         return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:
@@ -247,7 +258,8 @@ class Staged:
     def begin(self, pitch: float, state: State) -> StagedMemory:
         """Memory at the start."""
         first = excursion.start(pitch, self._frame.turning)
-        return StagedMemory(0, _begin(state, first), first, first)
+        memory = StagedMemory(0, _begin(self._model, state, first), first, first, self._frame)
+        return self._lying(memory, state)
 
     def advance(self, before: StagedMemory, state: State) -> StagedMemory:
         """Memory now, and the next stage where the present one's condition is met."""
@@ -255,12 +267,12 @@ class Staged:
         now = excursion.integrate(
             before.excursion,
             state.momentum.angular_velocity,
-            self._axis(state),
-            self._frame.turning,
+            before.frame.axis(state.trunk_axes),
+            before.frame.turning,
             self._period,
             measured.correction_time,
         )
-        turned = self._frame.turned(state.trunk_axes)
+        turned = before.frame.turned(state.trunk_axes)
         now = excursion.keep_phase(now, turned, self._period, measured.phase_time)
         slow = float(np.abs(state.velocity).max()) < SLOW
         airborne = 0.0 if state.contacts.count else before.airborne + self._period
@@ -270,13 +282,37 @@ class Staged:
         scene = self._scene(memory, state)
         memory = memory._replace(step=stepping.next(scene) if stepping else Step())
         scene = scene._replace(step=memory.step)
-        until = self._stages[memory.stage].until
-        last = memory.stage + 1 == len(self._parts)
-        if not last and until is not None and until.met(scene):
-            memory = memory._replace(stage=memory.stage + 1, begin=_begin(state, now), aloft=None)
+        following = self._following(memory.stage, scene)
+        if following is not None:
+            memory = memory._replace(
+                stage=following, begin=_begin(self._model, state, now), aloft=None
+            )
+            memory = self._lying(memory, state)
             scene = self._scene(memory, state)
         law = self._poses[memory.stage]
         return memory._replace(aloft=law.advance(memory.aloft, scene, self._period))
+
+    def _following(self, number: int, scene: Scene) -> int | None:
+        """The stage that begins now, if one does."""
+        stage, last = self._stages[number], number + 1 == len(self._parts)
+        if not last and stage.until is not None and stage.until.met(scene):
+            return number + 1
+        if stage.otherwise and stage.otherwise.when.met(scene):
+            return [one.name for one in self._stages].index(stage.otherwise.stage)
+        return None
+
+    def _lying(self, memory: StagedMemory, state: State) -> StagedMemory:
+        """The same, in the frame that the stage which begins asks for."""
+        how = self._stages[memory.stage].lying
+        if how is None:
+            return memory
+        frame = lying(how, state.trunk_axes)
+        first = excursion.start(frame.turned(state.trunk_axes), frame.turning)
+        axis = frame.axis(state.trunk_axes)
+        tilt = np.array(rotation_between(frame.turning.tolist(), axis.tolist()))
+        first = first._replace(orientation=advance(first.orientation, tilt))
+        begin = _begin(self._model, state, first)
+        return memory._replace(frame=frame, excursion=first, first=first, begin=begin)
 
     def command(self, memory: StagedMemory, state: State) -> Command:
         """What the present stage wants at this instant."""
@@ -285,6 +321,7 @@ class Staged:
         poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
         scene = scene._replace(pose=poses[0], speed=speeds[0])
         part.tasks["weight"] = part.weight
+        part.tasks["axes"] = memory.frame.axes
         for row, kind_name, aim in part.fillers:
             aim.fill(row, kind_name, scene)
         held_out = part.held_out.copy()
@@ -294,7 +331,7 @@ class Staged:
             tasks=part.tasks,
             pose_a=pose_a,
             pose_b=pose_b,
-            forward=self.axes[0],
+            forward=memory.frame.axes[0],
             pose=part.pose,
             contact=part.contact,
             supervisor=stage.supervisor or self._control.supervisor,
@@ -307,14 +344,16 @@ class Staged:
     def signals(self, memory: StagedMemory, state: State) -> Signals:
         """What the log keeps of it."""
         now = memory.excursion
-        return Signals(now.angle, now.phase, self._axis(state), self.axes, memory.stage)
+        frame = memory.frame
+        axis = frame.axis(state.trunk_axes)
+        return Signals(now.angle, now.phase, axis, frame.axes, memory.stage)
 
     def _scene(self, memory: StagedMemory, state: State) -> Scene:
         return Scene(
             model=self._model,
             state=state,
-            axes=self.axes,
-            turning=self._frame.turning,
+            axes=memory.frame.axes,
+            turning=memory.frame.turning,
             excursion=memory.excursion,
             measure=self._measured.measure,
             begin=memory.begin,
@@ -323,16 +362,20 @@ class Staged:
             laws=self._laws,
             pose=self._nothing,
             speed=self._nothing,
-            target=self._target,
+            target=self._goal(memory),
             turned=memory.excursion.phase - memory.first.phase,
             airborne=memory.airborne,
             still=memory.still,
             step=memory.step,
         )
 
-    def _axis(self, state: State) -> Array:
-        """The trunk's axis (3,) that should stay where it turns about, unit, world."""
-        return self._frame.axis(state.trunk_axes)
+    def _goal(self, memory: StagedMemory) -> float:
+        """In-plane excursion that the stage is to reach, since the start [rad]."""
+        to = self._stages[memory.stage].to
+        if to is None:
+            return self._target
+        phase, first = memory.excursion.phase, memory.first.phase
+        return phase - first + (math.radians(to) - phase + math.pi) % math.tau - math.pi
 
 
 def _names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
@@ -346,7 +389,8 @@ def _lag(pose: PoseGains) -> float:
     return pose.damping / pose.stiffness + pose.horizon if pose.stiffness else 0.0
 
 
-def _begin(state: State, now: Excursion) -> Begin:
+def _begin(model: Model, state: State, now: Excursion) -> Begin:
     data = state.data
     com = state.momentum.com
-    return Begin(state.time, com, data.xpos.copy(), data.xquat.copy(), now)
+    angles = state.position[model.angles].copy()
+    return Begin(state.time, com, data.xpos.copy(), data.xquat.copy(), angles, now)

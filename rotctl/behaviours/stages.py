@@ -6,8 +6,9 @@ from dataclasses import field, replace
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aims import SERVES, Aim
+from rotctl.behaviours.facing import Lying
 from rotctl.behaviours.flight import FlightSettings
-from rotctl.behaviours.posing import GlideSettings, RiseSettings, TurnSettings
+from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings, TurnSettings
 from rotctl.behaviours.until import Until
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
@@ -15,7 +16,7 @@ from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles, other_side
-from rotctl.settings import STRICT, NonNegative, Vector
+from rotctl.settings import STRICT, Finite, NonNegative, Vector
 
 
 @validated(frozen=True, config=STRICT)
@@ -52,6 +53,19 @@ class TaskSettings:
 
 
 @validated(frozen=True, config=STRICT)
+class Otherwise:
+    """Where a stage goes when it comes to nothing.
+
+    Attributes:
+        when: it has come to nothing.
+        stage: name of the one that begins then.
+    """
+
+    when: Until
+    stage: str
+
+
+@validated(frozen=True, config=STRICT)
 class Stage:
     """One part of a behaviour.
 
@@ -60,15 +74,21 @@ class Stage:
         rise: poses over the height of the centre of mass, or
         turn: over how far it has turned, or
         glide: over time, or
+        reach: a pose that is reached in a time, or
         flight: poses that bring the body to its landing, see `rotctl.behaviours.flight`.
         tasks: by name, beside those of every stage.
         until: what ends it; nothing for the last stage alone.
+        otherwise: what ends it before that, and where it goes on then.
         supervisor: in place of the controller's.
         pose: name of the controller's pose gains in place of its usual ones.
         contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
         held_out: bodies whose contacts control may not use;
         toes: of which it may use those in front of their middle alone, so that heels can rise.
+        lying: the way, left and phase are from here on those of how the body lies as the stage
+            begins; see `rotctl.behaviours.facing.Lying`.
+        to: phase that is the target of this stage, in place of the behaviour's; whichever way is
+            nearer [deg].
     """
 
     name: str
@@ -76,30 +96,34 @@ class Stage:
     rise: RiseSettings | None = None
     turn: TurnSettings | None = None
     glide: GlideSettings | None = None
+    reach: ReachSettings | None = None
     flight: FlightSettings | None = None
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     until: Until | None = None
+    otherwise: Otherwise | None = None
     supervisor: SupervisorName | None = None
     pose: str = ""
     contact: str = ""
     lead: NonNegative = 0.0
     held_out: tuple[str, ...] = ()
     toes: tuple[str, ...] = ()
+    lying: Lying | None = None
+    to: Finite | None = None
 
     def __post_init__(self) -> None:
-        laws = (self.poses, self.rise, self.turn, self.glide, self.flight)
+        laws = (self.poses, self.rise, self.turn, self.glide, self.reach, self.flight)
         given = sum(law is not None for law in laws)
         if given != 1:
             raise ValueError(
-                f"the stage {self.name!r} must have one of poses, rise, turn, glide and flight, "
-                f"not {given}"
+                f"the stage {self.name!r} must have one of poses, rise, turn, glide, reach and "
+                f"flight, not {given}"
             )
 
 
 def mirrored(stage: Stage, model: Model) -> Stage:
     """The same with the mirror images of its poses, for a turn the other way."""
     poses, rise, turn, flight = stage.poses, stage.rise, stage.turn, stage.flight
-    glide = stage.glide
+    glide, reach = stage.glide, stage.reach
     if poses:
         other = None if poses.b is None else _over_phase(model, poses.b)
         poses = Poses(_over_phase(model, poses.a), other)
@@ -113,6 +137,8 @@ def mirrored(stage: Stage, model: Model) -> Stage:
     if glide:
         start, end = mirrored_angles(model, glide.start), mirrored_angles(model, glide.end)
         glide = replace(glide, start=start, end=end)
+    if reach:
+        reach = replace(reach, pose=mirrored_angles(model, reach.pose))
     if flight:
         tuck, stretch = (mirrored_angles(model, a) for a in (flight.tuck, flight.stretch))
         shapes = {name: mirrored_angles(model, a) for name, a in flight.shapes.items()}
@@ -123,7 +149,8 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         if flight.feet:
             pose = mirrored_angles(model, flight.feet.pose)
             flight = replace(flight, feet=replace(flight.feet, pose=pose))
-    return replace(stage, poses=poses, rise=rise, turn=turn, glide=glide, flight=flight)
+    stage = replace(stage, poses=poses, rise=rise, turn=turn, glide=glide)
+    return replace(stage, reach=reach, flight=flight)
 
 
 def _over_phase(model: Model, pose: Mapping[str, Angle]) -> dict[str, Angle]:

@@ -72,6 +72,22 @@ class Near:
 
 
 @validated(frozen=True, config=STRICT)
+class Low:
+    """The centre of mass is nearer to the ground than that [m]."""
+
+    kind: Literal["low"]
+    height: Positive
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        x, y, z = scene.state.momentum.com.tolist()
+        return z - scene.model.ground.height(x, y) < self.height
+
+
+@validated(frozen=True, config=STRICT)
 class Touches:
     """One of these bodies is on the ground; a name without a side stands for both sides."""
 
@@ -267,6 +283,7 @@ Until = Annotated[
     After
     | Turned
     | Near
+    | Low
     | Touches
     | Airborne
     | Still

@@ -16,6 +16,7 @@ from rotctl.metrics import (
     early,
     finish,
     flip,
+    getting_up,
     orientation,
     pace,
     rolling,
@@ -26,6 +27,7 @@ from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria
+from rotctl.metrics.getting_up import GettingUpCriteria
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.quantile import percentile
@@ -37,12 +39,24 @@ Criteria = Annotated[
     | DiveCriteria
     | FinishCriteria
     | FlipCriteria
+    | GettingUpCriteria
     | OrientationCriteria
     | RollingCriteria
     | StandingCriteria,
     Field(discriminator="kind"),
 ]
-_KINDS = (rolling, appearance, pace, standing, orientation, flip, dive, finish, acrobatic)
+_KINDS = (
+    rolling,
+    appearance,
+    pace,
+    standing,
+    orientation,
+    flip,
+    dive,
+    finish,
+    acrobatic,
+    getting_up,
+)
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
@@ -106,6 +120,9 @@ def judge(
         found, reason = acrobatic.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
+    elif isinstance(criteria, GettingUpCriteria):
+        up, reason = getting_up.judge(log, criteria, period)
+        found, asked = dict(up), {}
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
