@@ -17,6 +17,7 @@ from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import Heading, Stepping
+from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.task import Tasks
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model, body_ids
@@ -108,7 +109,10 @@ class Face:
 
 @validated(frozen=True, config=STRICT)
 class Plane:
-    """A body turns in the plane across left, as far as it likes: attitude."""
+    """A body turns in its plane, as far as it likes: attitude.
+
+    The plane lies across left, or across forward where the behaviour turns about that.
+    """
 
     law: Literal["plane"]
 
@@ -116,11 +120,12 @@ class Plane:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target: the present attitude, less what turns its left away."""
-        body, left = int(task["body"]), scene.axes[1]
-        side = scene.state.data.xmat[body].reshape(3, 3)[:, 1]
+        """Set the target: the present attitude, less what turns its axis away."""
+        body, column = int(task["body"]), 0 if np.array_equal(scene.turning, scene.axes[0]) else 1
+        side = scene.state.data.xmat[body].reshape(3, 3)[:, column]
+        across = scene.axes[column]
         task["target"] = advanced(
-            scene.state.data.xquat[body].tolist(), rotation_between(side.tolist(), left.tolist())
+            scene.state.data.xquat[body].tolist(), rotation_between(side.tolist(), across.tolist())
         )
 
 
@@ -287,7 +292,10 @@ Aim = Annotated[
     | Launch
     | Whirl
     | Poise
-    | Shift,
+    | Shift
+    | Carry
+    | Place
+    | Stride,
     Field(discriminator="law"),
 ]
 
@@ -312,6 +320,9 @@ SERVES: dict[type, tuple[str, ...]] = {
     Whirl: ("spin",),
     Poise: ("linear",),
     Shift: ("linear",),
+    Carry: ("linear",),
+    Place: ("point",),
+    Stride: ("point",),
 }
 """Kinds of task that an aim is for."""
 

@@ -55,7 +55,7 @@ class CompiledRoll:
             integral=measured.measure == "integral",
             task=self._at(tasks),
         )
-        constants.axes[:], constants.front[:] = frame.axes.ravel(), frame.front
+        constants.axes[:], constants.front[:] = frame.axes.ravel(), frame.mark
         constants.velocity[:], constants.angular_velocity[:] = velocities
         names: tuple[str, ...] = ("coefficients", "low", "high")
         if isinstance(poses, ReferencePair):

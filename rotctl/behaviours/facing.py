@@ -11,7 +11,7 @@ from rotctl.rotations import Array, about_up, crossed, multiply, rotate
 
 UP = np.array([0.0, 0.0, 1.0])
 
-TurnAbout = Literal["left", "up"]
+TurnAbout = Literal["left", "up", "forward"]
 
 Lying = Literal["across", "along"]
 """How one who lies is faced: across the way, head to the left, or along it, where its face goes as
@@ -47,15 +47,18 @@ class Frame:
         turning: (3,) the one of them that it turns about.
         trunk_axis: (3,) the trunk's that lies along it, unit, in the trunk's frame.
         orientation: (4,) of the trunk at phase 0, unit quaternion.
-        front: (3,) the trunk's front there.
-        column, sign: which of the trunk's front, left and up that is, and whether against it.
+        mark: (3,) there the trunk's own axis whose turn is told, unit: its front, or its up where
+            it turns about its front.
+        marked: which of the trunk's front, left and up that is.
+        column, sign: which of them lies along the axis, and whether against it.
     """
 
     axes: Array
     turning: Array
     trunk_axis: Array
     orientation: Array
-    front: Array
+    mark: Array
+    marked: int
     column: int
     sign: float
 
@@ -64,8 +67,8 @@ class Frame:
         return trunk_axes[:, self.column] * self.sign
 
     def turned(self, trunk_axes: Array) -> float:
-        """How far its front has turned from phase 0 [rad], within a revolution."""
-        (x, y, z), now = self.front.tolist(), trunk_axes[:, 0].tolist()
+        """How far it has turned from phase 0 [rad], within a revolution."""
+        (x, y, z), now = self.mark.tolist(), trunk_axes[:, self.marked].tolist()
         across, about = crossed((x, y, z), now), self.turning.tolist()
         sine = about[0] * across[0] + about[1] * across[1] + about[2] * across[2]
         return math.atan2(sine, x * now[0] + y * now[1] + z * now[2])
@@ -77,18 +80,22 @@ def frame_of(about: RollAbout, heading: float, turn_about: TurnAbout = "left") -
     Args:
         about: the trunk's axis that lies to the left.
         heading: of forward, from +x towards +y [deg].
-        turn_about: what it turns about; about up it stands, its left to the left.
+        turn_about: what it turns about; about up and about forward it stands, its left to the
+            left.
     """
     facing, turn = FACING[about], about_up(math.radians(heading))
     orientation = multiply(turn, facing.orientation)
     axes = np.array([rotate(turn, axis) for axis in np.eye(3)])
-    axis = facing.trunk_axis if turn_about == "left" else UP
+    number = ("forward", "left", "up").index(turn_about)
+    axis = facing.trunk_axis if turn_about == "left" else np.eye(3)[number]
+    marked = 2 if turn_about == "forward" else 0
     return Frame(
         axes=axes,
-        turning=axes[1 if turn_about == "left" else 2],
+        turning=axes[number],
         trunk_axis=axis,
         orientation=orientation,
-        front=rotate(orientation, np.array([1.0, 0.0, 0.0])),
+        mark=rotate(orientation, np.eye(3)[marked]),
+        marked=marked,
         column=int(np.abs(axis).argmax()),
         sign=float(axis.sum()),
     )

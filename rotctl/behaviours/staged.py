@@ -54,7 +54,8 @@ class StagedSettings:
         heading: of forward, from +x towards +y [deg].
         tasks: of every stage, by name; the controller has gains under the same names.
         target_excursion: how far to turn [deg], about
-        turn_about: left, or up; poses are of a turn to the left, and mirrored for one to the right.
+        turn_about: left, or up, or forward; about the latter two stages are of a turn to the left,
+            and mirrored for one to the right.
         shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
     """
 
@@ -71,8 +72,9 @@ class StagedSettings:
     description: str = ""
 
     def __post_init__(self) -> None:
-        if self.turn_about == "up" and self.roll_about != "left":
-            raise ValueError(f"turn_about up needs roll_about left, not {self.roll_about}")
+        if self.turn_about != "left" and self.roll_about != "left":
+            about = self.turn_about
+            raise ValueError(f"turn_about {about} needs roll_about left, not {self.roll_about}")
         if self.stages[0].poses is None:
             raise ValueError("the first stage must have poses: a run starts in them")
         if self.shape != TUCK and not any(stage.flight for stage in self.stages):
@@ -173,7 +175,8 @@ class Staged:
         self._frame = frame_of(settings.roll_about, settings.heading, settings.turn_about)
         self.axes = self._frame.axes
         self._target = math.radians(settings.target_excursion)
-        right = settings.turn_about == "up" and self._target < 0.0
+        to_left = {"left": 0.0, "up": self._target, "forward": -self._target}
+        right = to_left[settings.turn_about] < 0.0
         self._stages = tuple(mirrored(s, model) if right else s for s in settings.stages)
         found: dict[str, None] = {}
         for stage in self._stages:

@@ -1,7 +1,8 @@
 """What a stage of a behaviour says: its tasks with their aims, its poses, and what ends it."""
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import field, fields, replace
+from typing import Any
 
 from pydantic.dataclasses import dataclass as validated
 
@@ -9,7 +10,8 @@ from rotctl.behaviours.aims import SERVES, Aim
 from rotctl.behaviours.facing import Lying
 from rotctl.behaviours.flight import FlightSettings
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings, TurnSettings
-from rotctl.behaviours.until import Until
+from rotctl.behaviours.stepping import Stepping
+from rotctl.behaviours.until import Leaves, Turned, Until
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
 from rotctl.meant import instead
@@ -121,7 +123,7 @@ class Stage:
 
 
 def mirrored(stage: Stage, model: Model) -> Stage:
-    """The same with the mirror images of its poses, for a turn the other way."""
+    """The same with the mirror images of its poses and bodies, for a turn the other way."""
     poses, rise, turn, flight = stage.poses, stage.rise, stage.turn, stage.flight
     glide, reach = stage.glide, stage.reach
     if poses:
@@ -149,8 +151,40 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         if flight.feet:
             pose = mirrored_angles(model, flight.feet.pose)
             flight = replace(flight, feet=replace(flight.feet, pose=pose))
-    stage = replace(stage, poses=poses, rise=rise, turn=turn, glide=glide)
-    return replace(stage, reach=reach, flight=flight)
+    return replace(
+        stage,
+        poses=poses,
+        rise=rise,
+        turn=turn,
+        glide=glide,
+        reach=reach,
+        flight=flight,
+        tasks={name: _of_other_side(task) for name, task in stage.tasks.items()},
+        until=stage.until and _of_other_side(stage.until),
+        held_out=tuple(map(other_side, stage.held_out)),
+        toes=tuple(map(other_side, stage.toes)),
+    )
+
+
+def _of_other_side(said: Any) -> Any:
+    """What is said of bodies, said of their mirror images.
+
+    Steps are of a left foot and a right one, whatever turns.
+    """
+    if isinstance(said, Stepping):
+        return said
+    changed: dict[str, object] = {}
+    for named in fields(said):
+        value = getattr(said, named.name)
+        if named.name in ("body", "beyond"):
+            changed[named.name] = other_side(value)
+        elif named.name in ("bodies", "hands"):
+            changed[named.name] = tuple(map(other_side, value))
+        elif named.name == "angle" and value is not None and isinstance(said, Turned | Leaves):
+            changed[named.name] = -value
+        elif named.name == "aim" and value is not None:
+            changed[named.name] = _of_other_side(value)
+    return replace(said, **changed)
 
 
 def _over_phase(model: Model, pose: Mapping[str, Angle]) -> dict[str, Angle]:

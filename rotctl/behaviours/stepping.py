@@ -97,7 +97,7 @@ class Stepping:
             task["weight"] = 0.0
             return
         place = data.xpos[body] + product(data.xmat[body].reshape(3, 3), task["point"])
-        velocity = _velocity(scene, body, place)
+        velocity = velocity_of(scene, body, place)
         gone = min((scene.state.time - step.begin) / self.time, 1.0)
         left = self.time * (1.0 - gone)
         x, y = self.landing(scene, left)
@@ -188,7 +188,7 @@ def arrival(way: float, speed: float, time: float) -> float:
     return 6.0 * way / time**2 - 4.0 * speed / time
 
 
-def _velocity(scene: Scene, body: int, place: Array) -> Array:
+def velocity_of(scene: Scene, body: int, place: Array) -> Array:
     """Of a point of a body (3,) [m/s]."""
     jacobian = np.zeros((3, scene.model.mj.nv))
     mujoco.mj_jac(scene.model.mj, scene.state.data, jacobian, None, place, body)

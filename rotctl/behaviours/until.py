@@ -10,6 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.launch import leaning
 from rotctl.behaviours.poising import borne_at
 from rotctl.behaviours.scene import Scene
+from rotctl.behaviours.wheeling import beyond
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
 from rotctl.mechanics.terrain.pool import Basin
@@ -89,10 +90,15 @@ class Low:
 
 @validated(frozen=True, config=STRICT)
 class Touches:
-    """One of these bodies is on the ground; a name without a side stands for both sides."""
+    """One of these bodies is on the ground; a name without a side stands for both sides.
+
+    Attributes:
+        after: not before so long in the stage: a foot has to leave the ground first [s].
+    """
 
     kind: Literal["touches"]
     bodies: tuple[str, ...]
+    after: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -100,6 +106,8 @@ class Touches:
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
+        if scene.state.time - scene.begin.time < self.after - 1e-9:
+            return False
         wanted = body_ids(scene.model.mj, self.bodies, "behaviour.stages.until.bodies")
         return any(body in wanted for body in scene.state.contacts.body.tolist())
 
@@ -197,6 +205,27 @@ class Tilted:
 
 
 @validated(frozen=True, config=STRICT)
+class Passed:
+    """The centre of mass is so far beyond the middle of these bodies along the way, or nearer [m].
+
+    Attributes:
+        distance: beyond it; negative before it.
+    """
+
+    kind: Literal["passed"]
+    bodies: tuple[str, ...]
+    distance: Finite
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        return beyond(scene, self.bodies) >= self.distance
+
+
+@validated(frozen=True, config=STRICT)
 class Launched:
     """It rises at a speed [m/s], has come to a height [m], or its legs are straight [rad].
 
@@ -290,6 +319,7 @@ Until = Annotated[
     | Lands
     | Enters
     | Tilted
+    | Passed
     | Launched
     | Leaves
     | Over,

@@ -46,7 +46,8 @@ class AcrobaticCriteria:
 
     Attributes:
         order: groups of bodies that come down one after the other, after the start; the bodies of
-            one group in any order.
+            one group in any order. About forward it is that of a turn to the left, and the
+            mirror image counts for one to the right.
         turn: how far the trunk's turn may be off the target in the end [deg].
         about: what it turns about.
         landing: what counts as standing in the end; feet alone may touch once the last group is
@@ -58,7 +59,7 @@ class AcrobaticCriteria:
     order: Annotated[tuple[Group, ...], Field(min_length=1, max_length=20)]
     turn: Positive
     landing: StandingCriteria
-    about: Literal["left", "up"] = "left"
+    about: Literal["left", "up", "forward"] = "left"
     held: HeldCriteria | None = None
     description: str = ""
 
@@ -78,6 +79,8 @@ def judge(
     duration = len(floats(log, "trajectory/time")) * period
     # Hands were on the ground by order, and what came down otherwise is told by that.
     reason = standing.failure(replace(stood, other_contact=0.0), criteria.landing, duration)
+    if criteria.about == "forward" and target > 0.0:
+        criteria = replace(criteria, order=tuple(map(_other_sides, criteria.order)))
     if wrong := out_of_order(events, criteria):
         reason = wrong
     elif not abs(revolved - target) < criteria.turn:
@@ -125,6 +128,12 @@ def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
     if begun + 1 < len(groups):
         missing = missing or groups[begun + 1]
     return f"{' and '.join(sorted(missing))} never came down" if missing else ""
+
+
+def _other_sides(group: Group) -> Group:
+    """The mirror images of some parts, by name."""
+    sides = {"_l": "_r", "_r": "_l"}
+    return tuple(name[:-2] + sides.get(name[-2:], name[-2:]) for name in group)
 
 
 def told(events: list[TouchDown]) -> str:

@@ -86,12 +86,12 @@ def measure(log: Arrays, criteria: FlipCriteria, period: float) -> FlipMetrics:
     )
 
 
-def turn(log: Arrays, about: Literal["left", "up"] = "left") -> np.ndarray:
+def turn(log: Arrays, about: Literal["left", "up", "forward"] = "left") -> np.ndarray:
     """How far the trunk has turned since the start (steps,) [deg]."""
     forward, left, up = frame(log)
-    aside = left if about == "up" else -up
-    front = floats(log, "trajectory/trunk_axes")[:, :, 0]
-    pairs = zip((front * forward).sum(axis=1), (front * aside).sum(axis=1), strict=True)
+    start, aside = {"left": (forward, -up), "up": (forward, left), "forward": (up, -left)}[about]
+    axis = floats(log, "trajectory/trunk_axes")[:, :, 2 if about == "forward" else 0]
+    pairs = zip((axis * start).sum(axis=1), (axis * aside).sum(axis=1), strict=True)
     angle = np.unwrap(np.array([math.atan2(u, f) for f, u in pairs]))
     return np.asarray(np.degrees(angle - angle[:1]))
 
