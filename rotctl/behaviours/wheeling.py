@@ -124,16 +124,16 @@ class Carry:
 
 @validated(frozen=True, config=STRICT)
 class Place:
-    """Set a limb down on the way, so far beyond another: point.
+    """Set a limb down on the way, so far beyond another, or lift it there: point.
 
-    A limb that is on the ground has no weight here: its contacts hold it.
+    One that has come down has no weight here: its contacts hold it.
 
     Attributes:
         beyond: body whose place counts,
         distance: along the way from there [m].
         across: ahead, across the way, of where the body comes to rest [m].
-        angles: turned, between which it is lowered to the ground [deg], in the target's sense.
-        height: of the point over the ground when the limb is down [m].
+        angles: turned, between which it goes up or down there [deg], in the target's sense.
+        height: of the point over the ground in the end [m]; under it, and it comes down for sure.
     """
 
     law: Literal["place"]
@@ -150,21 +150,22 @@ class Place:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         body, state, data = int(task["body"]), scene.state, scene.state.data
-        if body in state.contacts.body.tolist():
-            task["weight"] = 0.0
-            return
         along, across = ways(scene)
         from_here = data.xpos[body_id(scene.model.mj, self.beyond, KEY)]
         aside = rests(scene, across) + self.across
         goal = (dot(from_here, along) + self.distance) * along + aside * across
         x, y = float(goal[0]), float(goal[1])
-        ground = scene.model.ground.height(x, y) + self.height
+        first = float(scene.begin.place[body][2])
+        last = scene.model.ground.height(x, y) + self.height
+        if last < first and body in state.contacts.body.tolist():
+            task["weight"] = 0.0
+            return
         share = share_of(scene, self.angles)
-        first = max(float(scene.begin.place[body][2]) - ground, 0.0)
-        task["target"][:3] = [x, y, ground + (1.0 - share) * first]
+        task["target"][:3] = [x, y, first + share * (last - first)]
         turns = abs(dot(state.momentum.angular_velocity, scene.turning))
         span = radians(self.angles[1] - self.angles[0])
-        task["velocity"][2] = -turns * first / span if 0.0 < share < 1.0 else 0.0
+        task["velocity"] = dot(state.momentum.com_velocity, across) * across
+        task["velocity"][2] = turns * (last - first) / span if 0.0 < share < 1.0 else 0.0
 
 
 @validated(frozen=True, config=STRICT)
