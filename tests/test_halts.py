@@ -7,7 +7,8 @@ import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
 from rotctl.metrics.halts import going, unkept
-from rotctl.metrics.rolling import failure_reason, measure
+from rotctl.metrics.rolling import measure
+from rotctl.metrics.rolling_rules import failure_reason
 
 HALTS = ((7.0, 11.0),)
 TIME = PERIOD * np.arange(1201)

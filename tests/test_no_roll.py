@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from rotctl.config import load
-from rotctl.metrics.rolling import failure_reason, measure
+from rotctl.metrics.rolling import measure
+from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.summary import summarise

@@ -13,9 +13,9 @@ from rotctl.metrics.rolling import (
     OF_REVOLUTIONS,
     RollingCriteria,
     RollingMetrics,
-    failure_reason,
     measure,
 )
+from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about
 
 PERIOD = 1.0 / 60.0

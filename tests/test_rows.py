@@ -11,7 +11,8 @@ from scipy.spatial.transform import Rotation
 from rotctl.behaviours.facing import FACING
 from rotctl.config import load
 from rotctl.errors import InputError
-from rotctl.metrics.rolling import failure_reason, measure
+from rotctl.metrics.rolling import measure
+from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.skeleton import Skeleton
 from rotctl.run import in_memory
 from rotctl.scenario import build

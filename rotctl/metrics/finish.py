@@ -13,6 +13,7 @@ from rotctl.metrics import rolling, standing
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
@@ -111,7 +112,7 @@ def judge(
     com, ground = floats(end, "trajectory/com"), floats(end, "trajectory/ground_height")
     height = float((com[:, 2] - ground).min()) if len(com) else math.nan
     reason = (
-        rolling.failure_reason(roll, criteria.roll, roll.duration)
+        failure_reason(roll, criteria.roll, roll.duration)
         or ("never stood up" if row == steps else "")
         or standing.failure(stood, settings, (steps - rest) * period)
         or (f"stands {height:.2f} m high" if height <= criteria.height * upright else "")

@@ -32,6 +32,7 @@ from rotctl.metrics.halts import Halts
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
 
 Criteria = Annotated[
@@ -105,7 +106,7 @@ def judge(
             settle = criteria.roll.settle
         else:
             rolled = rolling.measure(log, criteria, direction, period, halts)
-            found, reason = dict(vars(rolled)), rolling.failure_reason(rolled, criteria, wanted)
+            found, reason = dict(vars(rolled)), failure_reason(rolled, criteria, wanted)
             del found["stalled_at"], found["went_on"]  # of people's interest in a reason alone
             rolling_log, settle = log, criteria.settle
         found |= vars(appearance.measure(rolling_log, mj, direction, period))
