@@ -316,6 +316,11 @@ class Flight:
         amount, rate = self._towards(wanted, before, period)
         gone = (scene.state.time - scene.begin.time) / settings.change
         pose = self.pose(amount, contact)
+        if self._feet and self._feet.legs_reach:
+            opened = 1.0 - _smooth(min(time / settings.opening, 1.0))
+            turns = turning * time * self.mean_slowness(held, before.amount, time)
+            missing = self.left_to_turn(scene, contact, turning) - turns
+            pose = self._feet.placed(pose, self._sense * opened * missing)
         pose += (1.0 - _smooth(min(gone, 1.0))) * (before.first - pose)
         return Aloft(amount, rate, held, before.first, pose, (pose - before.pose) / period)
 

@@ -38,6 +38,8 @@ class LandingSettings:
         time: T, in which gravity may take the angular momentum about the feet [s].
         share: of H that counts [-]; limbs take up a part of it.
         most: furthest that the centre of mass may be ahead of the feet, or behind [m].
+        hip: joint that puts the legs where they belong under a pelvis that has not turned enough,
+            or too far; none if empty.
     """
 
     pose: dict[str, Turn]
@@ -46,6 +48,7 @@ class LandingSettings:
     time: NonNegative
     share: NonNegative
     most: Positive
+    hip: str = ""
 
 
 class Contact(NamedTuple):
@@ -79,6 +82,7 @@ class Landing:
         self._settings, self._model, self._key = settings, model, key
         self._feet = body_ids(model.mj, settings.bodies, f"{key}.bodies")
         self._ankles = model.motors(settings.ankle, f"{key}.ankle")
+        self._hips = model.motors(settings.hip, f"{key}.hip") if settings.hip else []
         self._pose = make_pose_pair(model, Poses(dict(settings.pose)), f"{key}.pose").start(0.0)
         self._data = mujoco.MjData(model.mj)
         found = [self.contact(a) for a in ATTITUDES.tolist()]
@@ -124,3 +128,15 @@ class Landing:
     def at(self, offset: float) -> Contact:
         """The body with its centre of mass so far ahead of its feet [m], as near as it can."""
         return self.contact(float(np.interp(offset, self._offsets, self._attitudes)))
+
+    @property
+    def legs_reach(self) -> bool:
+        """Whether legs take up what the pelvis has not turned."""
+        return bool(self._hips)
+
+    def placed(self, pose: Array, missing: float) -> Array:
+        """A pose (nu,) with legs turned for a pelvis that has so far still to turn [rad]."""
+        placed = pose.copy()
+        low, high = self._model.joint_range[self._hips].T
+        placed[self._hips] = np.minimum(np.maximum(placed[self._hips] - missing, low), high)
+        return placed
