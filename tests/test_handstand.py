@@ -42,7 +42,8 @@ def scene(run):
     data.qpos[:] = log["trajectory/qpos"][row]
     data.qvel[:] = log["trajectory/qvel"][row]
     mujoco.mj_forward(model.mj, data)
-    return SimpleNamespace(model=model, state=read(model, data), axes=np.eye(3))
+    begin = SimpleNamespace(time=0.0)  # of the stage
+    return SimpleNamespace(model=model, state=read(model, data), axes=np.eye(3), begin=begin)
 
 
 def test_it_goes_onto_the_hands_holds_and_comes_back_onto_the_feet(run):
