@@ -10,6 +10,7 @@ from rotctl.config import load
 from rotctl.metrics import dive
 from rotctl.run import in_memory
 from rotctl.scenario import build
+from rotctl.simulation.episode import Episode
 
 PERIOD = 1 / 240
 
@@ -116,3 +117,16 @@ def test_other_dives_enter_straight_too(behaviour, target, height, shape):
         log = in_memory(build(config))[0].arrays()
         entered += not dive.judge(log, config.criteria, float(target), PERIOD)[1]
     assert entered >= 1
+
+
+def test_who_leans_over_the_edge_and_loses_it_for_a_step_is_not_over_the_abyss():
+    """The height of a launch is measured from the platform: over the water it would end."""
+    scenario = build(load(["behaviour=dive_forward"]))
+    staged, state = scenario.behaviour, next(iter(Episode(scenario))).state
+    lost = replace(state.contacts, position=np.zeros((0, 3)))
+    ahead = state.momentum._replace(com=np.array([0.5, 0.0, 0.9]))
+    leaning = state._replace(contacts=lost, momentum=ahead)
+    assert staged._scene(staged.begin(0.0, state), leaning).floor == 0.0
+    away = staged.begin(0.0, state)
+    gone = away._replace(begin=away.begin._replace(place=away.begin.place + [1.0, 0.0, 0.0]))
+    assert staged._scene(gone, leaning).floor == -10.0

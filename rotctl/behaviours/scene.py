@@ -81,8 +81,15 @@ class Scene(NamedTuple):
 
     @property
     def floor(self) -> float:
-        """Height of the ground that it stands on; without contacts of that below it [m]."""
+        """Height of the ground that it stands on [m].
+
+        Without contacts of that below it, or below where it was lowest as the stage began, if
+        that is higher: a foot that loses an edge for a step is not yet over the abyss.
+        """
         ground = self.model.ground
         found = [ground.height(x, y) for x, y, _ in self.state.contacts.position.tolist()]
+        if found:
+            return max(found)
         x, y, _ = self.state.momentum.com.tolist()
-        return max(found) if found else ground.height(x, y)
+        first_x, first_y, _ = min(self.begin.place[1:].tolist(), key=lambda place: place[2])
+        return max(ground.height(x, y), ground.height(first_x, first_y))
