@@ -9,7 +9,8 @@ from scipy.spatial.transform import Rotation
 from rotctl.behaviours import support
 from rotctl.behaviours.facing import frame_of
 from rotctl.behaviours.stages import mirrored
-from rotctl.behaviours.until import Passed, Touches
+from rotctl.behaviours.touching import Touches
+from rotctl.behaviours.until import Passed
 from rotctl.behaviours.wheeling import Carry, Place, Stride, share_of, ways
 from rotctl.config import load
 from rotctl.control.task import TASK

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.behaviours.aims import Above, Opposite
 from rotctl.behaviours.facing import lying
+from rotctl.behaviours.placing import Above, Opposite
 from rotctl.behaviours.posing import ReachSettings
 from rotctl.behaviours.stages import Stage, mirrored
 from rotctl.behaviours.until import Low

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from rotctl.behaviours.rolling_settings import RollingSettings
-from rotctl.behaviours.staged import StagedSettings
+from rotctl.behaviours.staged_settings import StagedSettings
 
 BehaviourSettings = Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]
 

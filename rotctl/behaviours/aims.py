@@ -4,25 +4,25 @@ An aim fills a task's target, velocity and acceleration at one instant; which ki
 serves stands in its docstring, and in `SERVES`.
 """
 
-from math import atan2, radians, sqrt
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours import support
+from rotctl.behaviours.attitudes import Bow, Face, Plane, Upright
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.launch import Launch, Lean, Whirl
+from rotctl.behaviours.placing import Above, Ground, Opposite, Watch
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import Heading, Stepping
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.task import Tasks
 from rotctl.mechanics import excursion
-from rotctl.mechanics.model import Model, body_ids
-from rotctl.rotations import about_up, advance, advanced, dot, rotation_between
-from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.mechanics.model import Model
+from rotctl.rotations import dot
+from rotctl.settings import STRICT, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -50,101 +50,6 @@ class Hold:
 
 
 @validated(frozen=True, config=STRICT)
-class Upright:
-    """A body's up is the world's, whatever its turn about it: attitude."""
-
-    law: Literal["upright"]
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        w, _, _, z = scene.state.data.xquat[int(task["body"])].tolist()
-        length = sqrt(w * w + z * z) or 1.0
-        task["target"] = [w / length, 0.0, 0.0, z / length]
-
-
-@validated(frozen=True, config=STRICT)
-class Bow:
-    """A body faces the way, and bows to it: attitude.
-
-    Attributes:
-        angle: from upright about left [deg].
-    """
-
-    law: Literal["bow"]
-    angle: Finite
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        forward, left, _ = scene.axes
-        facing = about_up(atan2(float(forward[1]), float(forward[0])))
-        task["target"] = advance(facing, radians(self.angle) * left)
-
-
-@validated(frozen=True, config=STRICT)
-class Face:
-    """A body is upright and faces where a turn about up has brought it: attitude.
-
-    Attributes:
-        share: of the behaviour's target [-].
-    """
-
-    law: Literal["face"]
-    share: Fraction
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        forward = scene.axes[0]
-        turned = self.share * scene.target
-        task["target"] = about_up(atan2(float(forward[1]), float(forward[0])) + turned)
-
-
-@validated(frozen=True, config=STRICT)
-class Plane:
-    """A body turns in its plane, as far as it likes: attitude.
-
-    The plane lies across left, or across forward where the behaviour turns about that.
-    """
-
-    law: Literal["plane"]
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target: the present attitude, less what turns its axis away."""
-        body, column = int(task["body"]), 0 if np.array_equal(scene.turning, scene.axes[0]) else 1
-        side = scene.state.data.xmat[body].reshape(3, 3)[:, column]
-        across = scene.axes[column]
-        task["target"] = advanced(
-            scene.state.data.xquat[body].tolist(), rotation_between(side.tolist(), across.tolist())
-        )
-
-
-@validated(frozen=True, config=STRICT)
-class Watch:
-    """Nothing is wanted: the log's error is the way from the point to the centre of mass: point."""
-
-    law: Literal["watch"]
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target, and no weight."""
-        task["target"][:3] = scene.state.momentum.com
-        task["weight"] = 0.0
-
-
-@validated(frozen=True, config=STRICT)
 class Pose:
     """A body's joints as the stage's pose has them, and as fast as it has them move: joints."""
 
@@ -158,94 +63,6 @@ class Pose:
         first, count = scene.model.hinges(int(task["body"]))
         task["target"][:count] = scene.pose[first : first + count]
         task["velocity"][:count] = scene.speed[first : first + count]
-
-
-@validated(frozen=True, config=STRICT)
-class Ground:
-    """A point that has left the ground is brought back to it: point.
-
-    Attributes:
-        height: of the point above the ground when its body stands [m].
-    """
-
-    law: Literal["ground"]
-    height: NonNegative
-
-    def check(self, model: Model) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target; a body that stands has no weight here, its contacts hold it."""
-        body = int(task["body"])
-        x, y, _ = scene.state.data.xpos[body].tolist()
-        task["target"][:3] = [x, y, scene.model.ground.height(x, y) + self.height]
-        if body == scene.step.swing or body in scene.state.contacts.body.tolist():
-            task["weight"] = 0.0
-
-
-@validated(frozen=True, config=STRICT)
-class Above:
-    """The centre of mass comes over the middle of bodies that may bear nothing yet: linear.
-
-    Attributes:
-        bodies: seen from above; a name without a side stands for both sides.
-        ahead: of their middle, along the way [m].
-        height: over the ground [m].
-        most: of what is missing, that the spring is given at once [m].
-    """
-
-    law: Literal["above"]
-    bodies: tuple[str, ...]
-    height: Positive
-    most: Positive
-    ahead: Finite = 0.0
-
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        model, state, com = scene.model, scene.state, scene.state.momentum.com
-        bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
-        x, y = support.middle(support.ends(model, state.data, bodies))
-        missing = np.array([x, y, scene.floor + self.height]) + self.ahead * scene.axes[0] - com
-        far = sqrt(dot(missing, missing))
-        task["target"][:3] = com + min(1.0, self.most / far if far else 1.0) * missing
-
-
-@validated(frozen=True, config=STRICT)
-class Opposite:
-    """A point is put on the ground where the capture point lies between it and a body: point.
-
-    A foot that comes down there leaves nothing to tip the body to a side of the line from the one
-    support to the other, however narrow both are.
-
-    Attributes:
-        body: the other support.
-        ahead: of the capture point, as seen from that body [m].
-        height: of the point above the ground when its body stands [m].
-    """
-
-    law: Literal["opposite"]
-    body: str
-    ahead: NonNegative
-    height: NonNegative
-
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        model, state = scene.model, scene.state
-        other = body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
-        ox, oy = support.middle(support.ends(model, state.data, other))
-        x, y = support.capture_point(state, support.pendulum_rate(model, state))
-        far = sqrt((x - ox) ** 2 + (y - oy) ** 2)
-        share = self.ahead / far if far else 0.0
-        px, py = x + share * (x - ox), y + share * (y - oy)
-        task["target"][:3] = [px, py, model.ground.height(px, py) + self.height]
 
 
 @validated(frozen=True, config=STRICT)

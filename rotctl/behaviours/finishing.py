@@ -16,7 +16,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.remembering import RollingMemory
 from rotctl.behaviours.rolling import Rolling
-from rotctl.behaviours.staged import Staged, StagedMemory, StagedSettings
+from rotctl.behaviours.staged import Staged, StagedMemory
+from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.behaviours.stages import Stage, TaskSettings
 from rotctl.behaviours.support import pendulum_rate
 from rotctl.control import Command, ControllerSettings

@@ -9,18 +9,19 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
-from rotctl.behaviours.aims import Above, Ground, Opposite
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight import FlightSettings
 from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pacing import PaceSettings
+from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
-from rotctl.behaviours.until import After, Airborne, Launched, Leaves, Low, Over, Still
+from rotctl.behaviours.touching import Airborne, Launched
+from rotctl.behaviours.until import After, Leaves, Low, Over, Still
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")

@@ -6,13 +6,11 @@ forward, left and up; the phase is the excursion about left, [AlBorno2014], or a
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import Annotated, Literal, NamedTuple
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
-from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import possible
 from rotctl.behaviours.aims import Aim
@@ -23,8 +21,8 @@ from rotctl.behaviours.behaviour import (
     gains_of,
     pose_gains_of,
 )
-from rotctl.behaviours.facing import Frame, TurnAbout, frame_of, lying
-from rotctl.behaviours.flight import TUCK, Aloft, Flight
+from rotctl.behaviours.facing import Frame, frame_of, lying
+from rotctl.behaviours.flight import Aloft, Flight
 from rotctl.behaviours.posing import OverPhase, PoseLaw
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import Stage, TaskSettings, mirrored
@@ -38,71 +36,13 @@ from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import SIDES, Model, body_ids
 from rotctl.mechanics.state import State
-from rotctl.motion import RollAbout, make_pose_pair
+from rotctl.motion import make_pose_pair
 from rotctl.rotations import Array, advance, rotation_between
-from rotctl.settings import STRICT, Finite
+
+if TYPE_CHECKING:  # which makes this one
+    from rotctl.behaviours.staged_settings import StagedSettings
 
 SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
-
-
-@validated(frozen=True, config=STRICT)
-class StagedSettings:
-    """A behaviour as stages.
-
-    Attributes:
-        roll_about: the trunk's axis that lies to the left.
-        heading: of forward, from +x towards +y [deg].
-        tasks: of every stage, by name; the controller has gains under the same names.
-        target_excursion: how far to turn [deg], about
-        turn_about: left, or up, or forward; about the latter two stages are of a turn to the left,
-            and mirrored for one to the right.
-        shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
-    """
-
-    name: str
-    kind: Literal["staged"]
-    roll_about: RollAbout
-    heading: Finite
-    stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
-    tasks: dict[str, TaskSettings] = field(default_factory=dict)
-    target_excursion: Finite = 0.0
-    turn_about: TurnAbout = "left"
-    shape: str = TUCK
-    source: str = ""
-    description: str = ""
-
-    def __post_init__(self) -> None:
-        if self.turn_about != "left" and self.roll_about != "left":
-            about = self.turn_about
-            raise ValueError(f"turn_about {about} needs roll_about left, not {self.roll_about}")
-        if self.stages[0].poses is None:
-            raise ValueError("the first stage must have poses: a run starts in them")
-        if self.shape != TUCK and not any(stage.flight for stage in self.stages):
-            raise ValueError(f"shape={self.shape}: nothing flies here")
-        names = [stage.name for stage in self.stages]
-        for stage in self.stages:
-            if stage.otherwise and stage.otherwise.stage not in names:
-                there = ", ".join(names)
-                raise ValueError(f"otherwise: no stage {stage.otherwise.stage!r}; valid: {there}")
-        for stage in self.stages[:-1]:
-            if stage.until is None:
-                raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
-
-    @property
-    def commanded(self) -> dict[str, float]:
-        """What is asked for, as columns of the summary [deg]."""
-        return {"target_excursion": self.target_excursion}
-
-    @property
-    def halts(self) -> tuple[()]:
-        """Stages have none."""
-        return ()
-
-    def make(
-        self, model: Model, control: ControllerSettings, measured: ExcursionSettings
-    ) -> "Staged":
-        """The behaviour of one run."""
-        return Staged(self, model, control, measured)
 
 
 class StagedMemory(NamedTuple):
@@ -155,7 +95,7 @@ class Staged:
 
     def __init__(
         self,
-        settings: StagedSettings,
+        settings: "StagedSettings",
         model: Model,
         control: ControllerSettings,
         measured: ExcursionSettings,

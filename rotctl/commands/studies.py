@@ -165,7 +165,7 @@ def add_summarise(commands: Commands) -> None:
         "summarise",
         help="tables of many runs",
         description="Tabulate all runs below DIR, one row a run, into summary.csv (and "
-        "summary.parquet, if pyarrow is there), and print success rates with 95 %% intervals and "
+        "summary.parquet, if pyarrow is there), and print success rates with 95 % intervals and "
         "the quartiles of the metrics by group, also in groups.csv.",
     )
     command.add_argument("folder", type=Path, metavar="DIR")

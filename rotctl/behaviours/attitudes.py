@@ -1,0 +1,95 @@
+"""How bodies are to be turned: aims of attitude tasks."""
+
+from math import atan2, radians, sqrt
+from typing import Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.scene import Scene
+from rotctl.control.task import Tasks
+from rotctl.mechanics.model import Model
+from rotctl.rotations import about_up, advance, advanced, rotation_between
+from rotctl.settings import STRICT, Finite, Fraction
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@validated(frozen=True, config=STRICT)
+class Upright:
+    """A body's up is the world's, whatever its turn about it: attitude."""
+
+    law: Literal["upright"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        w, _, _, z = scene.state.data.xquat[int(task["body"])].tolist()
+        length = sqrt(w * w + z * z) or 1.0
+        task["target"] = [w / length, 0.0, 0.0, z / length]
+
+
+@validated(frozen=True, config=STRICT)
+class Bow:
+    """A body faces the way, and bows to it: attitude.
+
+    Attributes:
+        angle: from upright about left [deg].
+    """
+
+    law: Literal["bow"]
+    angle: Finite
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        forward, left, _ = scene.axes
+        facing = about_up(atan2(float(forward[1]), float(forward[0])))
+        task["target"] = advance(facing, radians(self.angle) * left)
+
+
+@validated(frozen=True, config=STRICT)
+class Face:
+    """A body is upright and faces where a turn about up has brought it: attitude.
+
+    Attributes:
+        share: of the behaviour's target [-].
+    """
+
+    law: Literal["face"]
+    share: Fraction
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        forward = scene.axes[0]
+        turned = self.share * scene.target
+        task["target"] = about_up(atan2(float(forward[1]), float(forward[0])) + turned)
+
+
+@validated(frozen=True, config=STRICT)
+class Plane:
+    """A body turns in its plane, as far as it likes: attitude.
+
+    The plane lies across left, or across forward where the behaviour turns about that.
+    """
+
+    law: Literal["plane"]
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target: the present attitude, less what turns its axis away."""
+        body, column = int(task["body"]), 0 if np.array_equal(scene.turning, scene.axes[0]) else 1
+        side = scene.state.data.xmat[body].reshape(3, 3)[:, column]
+        across = scene.axes[column]
+        task["target"] = advanced(
+            scene.state.data.xquat[body].tolist(), rotation_between(side.tolist(), across.tolist())
+        )

@@ -1,0 +1,77 @@
+"""What a behaviour of stages is told, and the checks on it."""
+
+from dataclasses import field
+from typing import Annotated, Literal
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.facing import TurnAbout
+from rotctl.behaviours.flight import TUCK
+from rotctl.behaviours.staged import Staged
+from rotctl.behaviours.stages import Stage, TaskSettings
+from rotctl.control import ControllerSettings
+from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.model import Model
+from rotctl.motion import RollAbout
+from rotctl.settings import STRICT, Finite
+
+
+@validated(frozen=True, config=STRICT)
+class StagedSettings:
+    """A behaviour as stages.
+
+    Attributes:
+        roll_about: the trunk's axis that lies to the left.
+        heading: of forward, from +x towards +y [deg].
+        tasks: of every stage, by name; the controller has gains under the same names.
+        target_excursion: how far to turn [deg], about
+        turn_about: left, or up, or forward; about the latter two stages are of a turn to the left,
+            and mirrored for one to the right.
+        shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
+    """
+
+    name: str
+    kind: Literal["staged"]
+    roll_about: RollAbout
+    heading: Finite
+    stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
+    tasks: dict[str, TaskSettings] = field(default_factory=dict)
+    target_excursion: Finite = 0.0
+    turn_about: TurnAbout = "left"
+    shape: str = TUCK
+    source: str = ""
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        if self.turn_about != "left" and self.roll_about != "left":
+            about = self.turn_about
+            raise ValueError(f"turn_about {about} needs roll_about left, not {self.roll_about}")
+        if self.stages[0].poses is None:
+            raise ValueError("the first stage must have poses: a run starts in them")
+        if self.shape != TUCK and not any(stage.flight for stage in self.stages):
+            raise ValueError(f"shape={self.shape}: nothing flies here")
+        names = [stage.name for stage in self.stages]
+        for stage in self.stages:
+            if stage.otherwise and stage.otherwise.stage not in names:
+                there = ", ".join(names)
+                raise ValueError(f"otherwise: no stage {stage.otherwise.stage!r}; valid: {there}")
+        for stage in self.stages[:-1]:
+            if stage.until is None:
+                raise ValueError(f"the stage {stage.name!r} has no until, and others follow it")
+
+    @property
+    def commanded(self) -> dict[str, float]:
+        """What is asked for, as columns of the summary [deg]."""
+        return {"target_excursion": self.target_excursion}
+
+    @property
+    def halts(self) -> tuple[()]:
+        """Stages have none."""
+        return ()
+
+    def make(
+        self, model: Model, control: ControllerSettings, measured: ExcursionSettings
+    ) -> Staged:
+        """The behaviour of one run."""
+        return Staged(self, model, control, measured)

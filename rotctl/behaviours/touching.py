@@ -1,0 +1,121 @@
+"""When a stage ends by what touches: ground, water, or nothing any more."""
+
+from typing import Literal
+
+import numpy as np
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.scene import Scene
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
+from rotctl.mechanics.terrain.pool import Basin
+from rotctl.settings import STRICT, NonNegative, Positive
+
+
+@validated(frozen=True, config=STRICT)
+class Touches:
+    """One of these bodies is on the ground; a name without a side stands for both sides.
+
+    Attributes:
+        after: not before so long in the stage: a foot has to leave the ground first [s].
+    """
+
+    kind: Literal["touches"]
+    bodies: tuple[str, ...]
+    after: NonNegative = 0.0
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        if scene.state.time - scene.begin.time < self.after - 1e-9:
+            return False
+        wanted = body_ids(scene.model.mj, self.bodies, "behaviour.stages.until.bodies")
+        return any(body in wanted for body in scene.state.contacts.body.tolist())
+
+
+@validated(frozen=True, config=STRICT)
+class Airborne:
+    """Nothing has touched the ground for so long [s]."""
+
+    kind: Literal["airborne"]
+    seconds: NonNegative
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        return scene.airborne > 0.0 and scene.airborne >= self.seconds
+
+
+@validated(frozen=True, config=STRICT)
+class Lands:
+    """As `touches`, on the way down: feet that leave the ground in their time do not count."""
+
+    kind: Literal["lands"]
+    bodies: tuple[str, ...]
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        falls = float(scene.state.momentum.com_velocity[2]) < 0.0
+        return falls and Touches("touches", self.bodies).met(scene)
+
+
+@validated(frozen=True, config=STRICT)
+class Enters:
+    """One of these bodies is under water."""
+
+    kind: Literal["enters"]
+    bodies: tuple[str, ...]
+
+    def check(self, model: Model) -> None:
+        """Raises InputError for a body that is not there, and where there is no water."""
+        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+        if not isinstance(model.ground, Basin):
+            raise InputError(
+                "behaviour.stages.until: this behaviour dives, and here is no water; "
+                "choose terrain=pool"
+            )
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        mj, data = scene.model.mj, scene.state.data
+        bodies = body_ids(mj, self.bodies, "behaviour.stages.until.bodies")
+        x, y, _ = scene.state.momentum.com.tolist()
+        chosen = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
+        return lowest_and_highest(mj, data, chosen)[0] < scene.model.ground.height(x, y)
+
+
+@validated(frozen=True, config=STRICT)
+class Launched:
+    """It rises at a speed [m/s], has come to a height [m], or its legs are straight [rad].
+
+    Attributes:
+        knee: joints that count as straight below an angle [rad], by name; the mean counts.
+    """
+
+    kind: Literal["launched"]
+    up: Positive
+    height: Positive
+    knee: Positive
+
+    def check(self, model: Model) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        state, model = scene.state, scene.model
+        knees = state.position[model.angles][model.motors("knee", "behaviour.stages.until.knee")]
+        return (
+            float(state.momentum.com_velocity[2]) >= self.up
+            or float(state.momentum.com[2]) - scene.floor >= self.height
+            or float(knees.sum()) / len(knees) < self.knee
+            or scene.airborne > 0.012
+        )
