@@ -14,7 +14,8 @@ from typing import Any
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
 from rotctl.results import manifest
-from rotctl.results.index import ORIGIN, Row, Writer, stamp
+from rotctl.results.index import ORIGIN, Row, stamp
+from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry
 from rotctl.run_folder import EncodedRun, publish
 from rotctl.summary import Summary, broke_down
