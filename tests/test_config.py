@@ -29,7 +29,7 @@ NOT_READ = (
 )
 
 STARTS = (
-    "falling, long, poised, prone, rest, side, standing, still, supine, symmetric, tucked, "
+    "falling, long, poised, prone, raised, rest, side, standing, still, supine, symmetric, tucked, "
     "tucked_back"
 )
 

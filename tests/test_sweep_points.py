@@ -37,7 +37,7 @@ def overrides(*grid):
                 ("start=tucked", "seed=2"),
             ],
         ),
-        (("start=glob(r*)",), [("start=rest",)]),
+        (("start=glob(re*)",), [("start=rest",)]),
         (
             ("start.speed_x=[0,1],[1,2]",),
             [("start.speed_x=[0,1]",), ("start.speed_x=[1,2]",)],

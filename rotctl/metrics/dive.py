@@ -12,7 +12,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats, frame
-from rotctl.metrics.flip import longest_flight, turn
+from rotctl.metrics.flip import HOP, longest_flight, turn
 from rotctl.settings import STRICT, Finite, Positive
 
 NEAREST = 90.0  # [deg] off the target: beyond, another number of half revolutions is nearer
@@ -102,7 +102,10 @@ def entry(log: Arrays) -> int | None:
     stage = np.asarray(log["command/stage"])
     flown, _ = longest_flight(log)
     later = np.flatnonzero(np.diff(stage) > 0) + 1
-    return int(later[-1]) if len(later) and later[-1] > flown > 0 else None
+    if not len(later) or not flown:
+        return None
+    time = floats(log, "trajectory/time")
+    return int(later[-1]) if time[later[-1]] - time[flown] > HOP else None  # not the flight itself
 
 
 def _mean(log: Arrays, names: tuple[str, ...]) -> np.ndarray:

@@ -9,7 +9,7 @@ from rotctl.metrics import finish
 from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
 from rotctl.metrics.finish import FinishCriteria
-from rotctl.metrics.flip import FlipCriteria, longest_flight
+from rotctl.metrics.flip import HOP, FlipCriteria, longest_flight
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria, on_others
@@ -17,7 +17,6 @@ from rotctl.metrics.standing import StandingCriteria, on_others
 if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
 
-HOP = 0.1  # [s] without a contact that is no flight
 TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
 

@@ -12,6 +12,7 @@ from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.settings import STRICT, Positive
 
+HOP = 0.1  # [s] without a contact that is no flight
 COLUMNS = (
     Column("revolved", "Turned about the axis", "deg"),
     Column("flight_time", "Longest time in the air", "s"),
