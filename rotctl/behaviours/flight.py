@@ -11,89 +11,34 @@ of shape from here to the landing pose makes by itself. Shapes lie on one line: 
 fully tucked, 0 in the landing pose and -1 stretched.
 """
 
-from dataclasses import field
 from math import atan2, copysign, pi, radians, sqrt, tau
 from typing import NamedTuple, TypeVar
 
 import mujoco
 import numpy as np
-from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.facing import Frame
-from rotctl.behaviours.landing import Contact, Landing, LandingSettings
+from rotctl.behaviours.flight_settings import TUCK, EntrySettings, FlightSettings
+from rotctl.behaviours.landing import Contact, Landing
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
-from rotctl.motion import Turn, make_pose
+from rotctl.motion import make_pose
 from rotctl.rotations import Array, crossed, dot, quaternion_from_rotation_vector
-from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
 REMAINING = 1.0 - INSTANTS
 HALVINGS = 14  # of the amounts that are possible: 0.0001
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
-TUCK = "tuck"  # the shape that every flight has
 ROUNDING = 1e-6  # [m]
 LEAST_TIME = 1e-3  # [s] to the landing
 SETTLING = 4.0  # [periods] in which the amount comes near, so that it does not overshoot
 
 Share = TypeVar("Share", float, Array)
-
-
-@validated(frozen=True, config=STRICT)
-class EntrySettings:
-    """A landing that is always alike.
-
-    Attributes:
-        pose: by joint name [rad].
-        attitude: of the pelvis about left from upright [deg], past the whole or half turns that
-            the behaviour's target is.
-        bodies: that land.
-    """
-
-    pose: dict[str, Turn]
-    attitude: Finite
-    bodies: tuple[str, ...]
-
-
-@validated(frozen=True, config=STRICT)
-class FlightSettings:
-    """How a body flies.
-
-    Attributes:
-        tuck: tightest pose, by joint name [rad]; stretch: longest.
-        shapes: that may be flown in its place, by name: their tightest poses.
-        tightest, longest: shares of the way to them that it may go [-].
-        opening: to the landing pose begins so long before it [s].
-        change: from the landing pose to the tuck, or from the pose at take-off to the line of
-            shapes, takes so long [s].
-        entry: how it lands, if always alike;
-        feet: if on its feet, as its motion then asks for.
-        coasting: what landed turns on as if with its last speed for so long [s].
-    """
-
-    tuck: dict[str, Turn]
-    stretch: dict[str, Turn]
-    opening: Positive
-    change: Positive
-    tightest: Fraction = 1.0
-    longest: Fraction = 1.0
-    shapes: dict[str, dict[str, Turn]] = field(default_factory=dict)
-    entry: EntrySettings | None = None
-    feet: LandingSettings | None = None
-    coasting: NonNegative = 0.0
-
-    def __post_init__(self) -> None:
-        if (self.entry is None) == (self.feet is None):
-            raise ValueError("give either entry or feet, not both and not neither")
-
-    def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
-        """Of a shape, by joint name [rad]; None if there is no such shape."""
-        return self.tuck if shape == TUCK else self.shapes.get(shape)
 
 
 class Aloft(NamedTuple):

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.finishing import FinishSettings
-from rotctl.behaviours.flight import FlightSettings
+from rotctl.behaviours.flight_settings import FlightSettings
 from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pacing import PaceSettings

@@ -7,7 +7,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.facing import TurnAbout
-from rotctl.behaviours.flight import TUCK
+from rotctl.behaviours.flight_settings import TUCK
 from rotctl.behaviours.staged import Staged
 from rotctl.behaviours.stages import Stage, TaskSettings
 from rotctl.control import ControllerSettings

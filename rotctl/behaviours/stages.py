@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aims import SERVES, Aim
 from rotctl.behaviours.facing import Lying
-from rotctl.behaviours.flight import FlightSettings
+from rotctl.behaviours.flight_settings import FlightSettings
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings, TurnSettings
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.until import Leaves, Turned, Until

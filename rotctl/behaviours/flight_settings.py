@@ -1,0 +1,63 @@
+"""What a flight is told: its shapes, and how it lands."""
+
+from dataclasses import field
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.landing import LandingSettings
+from rotctl.motion import Turn
+from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
+
+TUCK = "tuck"  # the shape that every flight has
+
+
+@validated(frozen=True, config=STRICT)
+class EntrySettings:
+    """A landing that is always alike.
+
+    Attributes:
+        pose: by joint name [rad].
+        attitude: of the pelvis about left from upright [deg], past the whole or half turns that
+            the behaviour's target is.
+        bodies: that land.
+    """
+
+    pose: dict[str, Turn]
+    attitude: Finite
+    bodies: tuple[str, ...]
+
+
+@validated(frozen=True, config=STRICT)
+class FlightSettings:
+    """How a body flies.
+
+    Attributes:
+        tuck: tightest pose, by joint name [rad]; stretch: longest.
+        shapes: that may be flown in its place, by name: their tightest poses.
+        tightest, longest: shares of the way to them that it may go [-].
+        opening: to the landing pose begins so long before it [s].
+        change: from the landing pose to the tuck, or from the pose at take-off to the line of
+            shapes, takes so long [s].
+        entry: how it lands, if always alike;
+        feet: if on its feet, as its motion then asks for.
+        coasting: what landed turns on as if with its last speed for so long [s].
+    """
+
+    tuck: dict[str, Turn]
+    stretch: dict[str, Turn]
+    opening: Positive
+    change: Positive
+    tightest: Fraction = 1.0
+    longest: Fraction = 1.0
+    shapes: dict[str, dict[str, Turn]] = field(default_factory=dict)
+    entry: EntrySettings | None = None
+    feet: LandingSettings | None = None
+    coasting: NonNegative = 0.0
+
+    def __post_init__(self) -> None:
+        if (self.entry is None) == (self.feet is None):
+            raise ValueError("give either entry or feet, not both and not neither")
+
+    def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
+        """Of a shape, by joint name [rad]; None if there is no such shape."""
+        return self.tuck if shape == TUCK else self.shapes.get(shape)
