@@ -1,9 +1,14 @@
 """Links of the pages lead somewhere, in a checkout and on the site, and the site has every page."""
 
+import pkgutil
 import re
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+
+from rotctl import metrics
+from rotctl.metrics.columns import Column
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -32,3 +37,13 @@ def test_links_lead_somewhere(page):
 def test_every_page_is_on_the_site():
     listed = re.findall(r"^([a-z_0-9]+)$", (DOCS / "index.md").read_text(), re.MULTILINE)
     assert sorted(listed) == sorted(page.stem for page in DOCS.glob("*.md") if page.stem != "index")
+
+
+def test_every_column_of_a_summary_is_told():
+    page = (DOCS / "log.md").read_text(encoding="utf-8")
+    modules = [
+        import_module(f"rotctl.metrics.{m.name}") for m in pkgutil.iter_modules(metrics.__path__)
+    ]
+    named = [c.name for m in modules for c in getattr(m, "COLUMNS", ()) if isinstance(c, Column)]
+    assert len(named) > 40
+    assert [name for name in named if f"`{name}`" not in page] == []
