@@ -100,6 +100,17 @@ peers: setup ## time the control step beside placo and Pinocchio, in .tools/peer
 	$(UV) pip install --quiet --python .tools/peers/bin/python $(PEERS) --requirements pyproject.toml
 	PYTHONPATH=. .tools/peers/bin/python -c 'from rotctl.bench import peers; print(peers.compare())'
 
+ELSEWHERE = pin==4.1.0 gymnasium==1.4.0 imageio==2.37.0 mujoco==4.0.0 pytest
+.PHONY: elsewhere
+elsewhere: setup ## load an exported model into Pinocchio and gymnasium, in .tools/elsewhere
+	test -x .tools/elsewhere/bin/python || $(UV) venv --quiet .tools/elsewhere
+	$(UV) pip install --quiet --python .tools/elsewhere/bin/python $(ELSEWHERE)
+	rm -rf .tools/elsewhere/runs
+	$(BIN)/rotctl run duration=0.1 --quiet --out .tools/elsewhere/runs
+	$(BIN)/rotctl export .tools/elsewhere/runs/*/run.h5 --to mjcf --out .tools/elsewhere/adult.xml
+	ROTCTL_EXPORTED=.tools/elsewhere/adult.xml .tools/elsewhere/bin/python -m pytest --noconftest \
+		--override-ini addopts= -p no:cacheprovider tests/elsewhere.py
+
 # The old pins are kept where they still fit; `make lock LOCKFLAGS=--upgrade` renews them all.
 .PHONY: lock
 lock: $(UV) ## remake requirements.lock from pyproject.toml (hashed, free of index addresses)
