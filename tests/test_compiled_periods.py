@@ -103,6 +103,15 @@ def test_every_number_of_a_pace_acts_alike(both):
     )
 
 
+@pytest.mark.parametrize("behaviour", ["forward_roll", "backward_roll_1"])
+@pytest.mark.parametrize("direction", [90, 270])
+def test_c_catches_as_python_does(both, behaviour, direction):
+    both(
+        *(f"behaviour={behaviour}", "duration=2", "+catch=arm", "disturbance=push"),
+        *("disturbance.time=0.5", f"disturbance.direction={direction}"),
+    )
+
+
 def test_c_knows_what_a_roll_can_be_asked():
     """Whoever adds a setting gives it to C, or has `Rolling.compiled` refuse it."""
     assert {field.name for field in fields(PaceSettings)} == {
@@ -112,7 +121,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),
         *("align_with_slope", "poses", "reference", "angular_momentum", "pace", "finish"),
-        "course",
+        *("course", "catch"),
         *("source", "description"),
     }
 

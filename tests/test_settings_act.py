@@ -109,6 +109,11 @@ CASES = {
         r"behaviour\.finish\.(after|reach|turning|within)",
         seconds=1.5,
     ),
+    "catch": Case(
+        ("behaviour=forward_roll", "+catch=arm", "disturbance=push", "disturbance.time=0.3"),
+        r"behaviour\.catch\..*",
+        seconds=1.5,
+    ),
     "path": Case(
         ("behaviour=forward_roll", "+course=slalom", "behaviour.course.legs=[[0.3,10],[0.3,-5]]"),
         r"behaviour\.course\..*",

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from rotctl.behaviours.catching import Catch
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.pacing import Clock, Pace
 from rotctl.behaviours.remembering import RollingMemory
@@ -87,6 +88,12 @@ class CompiledRoll:
         made.settling[:], made.usual[:] = settings.settling, damping.ravel()
         self._kept.append(made)
         self.constants.pace, self.constants.way[:] = ctypes.addressof(made), way
+
+    def add_catch(self, catch: Catch) -> None:
+        """Catch itself, too."""
+        there, given = self.constants, catch.settings
+        there.catch_gain, there.catch_free, there.catch_most = given.gain, given.free, given.most
+        there.catch_motor[:], there.catch_high[:] = catch.motors, catch.high
 
     def _at(self, array: Any) -> int:
         self._kept.append(array)

@@ -20,6 +20,7 @@ import numpy as np
 
 from rotctl.behaviours.bearing import Bearing, Bearings
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
+from rotctl.behaviours.catching import Catch
 from rotctl.behaviours.compiled_roll import CompiledRoll
 from rotctl.behaviours.facing import UP
 from rotctl.behaviours.pacing import Pace
@@ -74,6 +75,8 @@ class Rolling:
         self._remembering = Remembering(settings, bearings, self._pace, measured, self._period)
         self._over = body_ids(model.mj, list(given.over), "behaviour.pace.over") if given else []
         self._poses = settings.make_poses(model)
+        about, catch = settings.roll_about, settings.catch
+        self._catch = Catch(catch, model, about) if catch is not None else None
         gains = gains_of(control, self.tasks)
         by_momentum = settings.angular_momentum is not None
         if by_momentum and measured.measure == "root":
@@ -127,6 +130,9 @@ class Rolling:
         """What rolling wants at this instant."""
         now, measure, on = memory.excursion, self._measured.measure, memory.bearing
         pose_a, pose_b = self._poses.at(now.phase)
+        if self._catch is not None:
+            rise = float(memory.axis[2])
+            pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
         velocity, spin = self._speed * on.way, self._rate * on.left
         self._velocities[:] = self._constant(on)
         if self._pace:
@@ -191,6 +197,8 @@ class Rolling:
             self._poses,
             self._tasks,
         )
+        if self._catch is not None:
+            made.add_catch(self._catch)
         if self._pace:
             made.add_pace(self._pace, on.way, self._over, self._usual)
         return made

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import Finishing, FinishSettings
 from rotctl.behaviours.pacing import Halts, PaceSettings
@@ -42,6 +43,7 @@ class RollingSettings:
         pace: how one of the two is kept, whatever the body makes of the pair; none is by default.
         finish: how a roll with a pace ends.
         course: where it goes from its heading; straight on by default.
+        catch: what catches it where it tips over its side; nothing by default.
     """
 
     name: str
@@ -57,6 +59,7 @@ class RollingSettings:
     pace: PaceSettings | None = None
     finish: FinishSettings | None = None
     course: CourseSettings | None = None
+    catch: CatchSettings | None = None
     source: str = ""
     description: str = ""
 
@@ -76,6 +79,8 @@ class RollingSettings:
             self.finish.staged(self.roll_about, self.heading)
         if self.course and self.angular_momentum is not None:
             raise ValueError("a course commands velocities: give no angular_momentum")
+        if self.catch and self.roll_about == "head":
+            raise ValueError("a roll about its head lies on its side, and has nothing to catch")
 
     @property
     def commanded(self) -> dict[str, float]:

@@ -143,6 +143,7 @@ def list_choices(arguments: argparse.Namespace) -> int:
     from rotctl.meant import instead
 
     titles = {
+        "catch": "catch (+catch=NAME)",
         "course": "course (+course=NAME)",
         "finish": "finish (+finish=NAME)",
         "motion": "motion (behaviour.reference.clip=NAME)",

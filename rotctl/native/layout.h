@@ -103,11 +103,13 @@ typedef struct {
 } Pace;
 
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
-// `coefficients` (2, waves, nu); its two tasks are where the command has them.
+// `coefficients` (2, waves, nu); its two tasks are where the command has them. Nothing catches it
+// where that gain is 0.
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
-  int column, integral, rows, waves;
+  double catch_gain, catch_free, catch_most, catch_high[2];
+  int column, integral, rows, waves, catch_motor[2];
   const double *table, *rise, *coefficients, *low, *high;
   const Pace* pace;
   Task* task;

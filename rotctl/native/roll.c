@@ -65,12 +65,23 @@ static void poses_at(const Roll* r, double phase, int nu, double* a, double* b) 
   }
 }
 
+// behaviours/catching.py `spread`
+static void spread(const Roll* r, double rise, double* pose) {
+  for (int i = 0; i < 2; i++) {
+    int motor = r->catch_motor[i];
+    if (motor < 0) continue;
+    double out = fmin(fmax(r->catch_gain * ((i ? rise : -rise) - r->catch_free), 0), r->catch_most);
+    pose[motor] = fmin(pose[motor] + out, fmax(r->catch_high[i], pose[motor]));
+  }
+}
+
 // `advance` and `command`: `it` is the memory of the period before, and then of this one.
 static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading* now,
                     RollMemory* it, const Command* w) {
   turn_along(r, now, it);
   if (r->pace) keep_pace(r, d, now, it);
   poses_at(r, it->phase, s->nu, w->pose_a, w->pose_b);
+  if (r->catch_gain > 0) spread(r, it->axis[2], w->pose_a), spread(r, it->axis[2], w->pose_b);
   for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
   missing_turn(r, it, d->time, r->task[1].target);
 }
