@@ -155,8 +155,8 @@ def test_overrides_and_options_may_be_mixed(cli, made):
          "--force?); see rotctl run --help"),
         (["list", "x", "y"], "rotctl list: unrecognized arguments: y; see rotctl list --help"),
         (["list", "terain"], "rotctl: \"terain\": no such group; did you mean terrain? valid: "
-         "behaviour, catch, character, controller, course, criteria, disturbance, excursion, finish, "
-         "physics, plant, reference, start, terrain, motion, tune, experiments"),
+         "behaviour, catch, character, controller, course, criteria, disturbance, excursion, "
+         "finish, physics, plant, reference, start, terrain, motion, tune, experiments"),
         ([], "rotctl: the following arguments are required: COMMAND; see rotctl --help"),
         (["inspect"], "rotctl inspect: the following arguments are required: RUN.h5; "
          "see rotctl inspect --help"),
