@@ -178,6 +178,27 @@ CASES = {
         ("behaviour=get_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
     ),
     "reaching": Case(("behaviour=get_up",), r"behaviour\.stages\.1\.reach\.seconds"),
+    "striding into a cartwheel": Case(
+        ("behaviour=cartwheel",),
+        r"behaviour\.stages\.1\.(until\.after|tasks\.(carry|stride)\.aim\.(?!law).*)",
+        {r".*\.carry\.aim\.angles\.[01]": "of heights that differ"},
+        seconds=1.2,
+    ),
+    "hands of a cartwheel": Case(
+        ("behaviour=cartwheel",),
+        r"behaviour\.stages\.(2\.until\.distance|3\.tasks\.(carry|reach)\.aim\.(?!law).*)",
+        seconds=2.0,
+    ),
+    "onto the hands": Case(
+        ("behaviour=handstand",),
+        r"behaviour\.stages\.(1\.glide\.seconds|2\.tasks\.shift\.aim\.(?!law).*)",
+        seconds=2.4,
+    ),
+    "over the hands": Case(
+        ("behaviour=handstand",),
+        r"behaviour\.stages\.(3\.until|4\.tasks\.poise\.aim)\.(within|speed|rate|gain|margin)",
+        seconds=4.3,
+    ),
     "landing": Case(("behaviour=land",), r"start\.falling\..*", seconds=0.1),
 }
 

@@ -1,12 +1,17 @@
 """Another height, weight and strength: the same motion, slower, by the law of similarity."""
 
 from dataclasses import fields
+from typing import get_args, get_type_hints
 
 import numpy as np
 import pytest
 
+from rotctl.behaviours.aims import Aim
 from rotctl.behaviours.launch import Launch, Whirl
+from rotctl.behaviours.similar import UNITS
 from rotctl.behaviours.similar import similar as asking
+from rotctl.behaviours.until import Until
+from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.config import load
 from rotctl.control.similar import similar
 from rotctl.errors import InputError
@@ -104,8 +109,45 @@ def test_what_is_asked_for_has_its_units():
     assert air.speed_x == start.speed_x
 
 
-def test_units_are_of_fields_that_there_are():
-    for shape, units in falling.UNITS.items():
+WITHOUT = {  # shares, angles and gains, which are for all the same
+    "Bow.angle", "Face.share", "Turn.most", "Capture.gain", "Capture.lunge", "Stepping.spin",
+    "Lean.gain", "Launch.gain", "Whirl.amount", "Poise.gain", "Carry.gain", "Carry.angles",
+    "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Tilted.angle",
+    "Launched.knee", "Leaves.angle",
+}  # fmt: skip
+
+
+def numbers(shape):
+    """Names of the fields of settings that are numbers."""
+    return {name for name, kind in get_type_hints(shape).items() if "float" in str(kind)}
+
+
+def test_every_number_of_an_aim_or_a_condition_has_a_unit_or_is_known_to_have_none():
+    shapes = [shape for union in (Aim, Until) for shape in get_args(get_args(union)[0])]
+    assert len(shapes) > 30
+    said = {f"{shape.__name__}.{name}" for shape in shapes for name in UNITS.get(shape, {})}
+    assert not said & WITHOUT
+    assert {f"{s.__name__}.{name}" for s in shapes for name in numbers(s)} == said | WITHOUT
+
+
+def test_a_cartwheel_is_asked_for_in_its_units():
+    settings = load(["behaviour=cartwheel"]).behaviour
+    found = asking(settings, Likeness(size=4.0, mass=3.0))  # a time is twice as long
+    (carry, *_), (other, *_) = _aims(settings, Carry), _aims(found, Carry)
+    assert (other.speed, other.eager) == (2 * carry.speed, 0.5 * carry.eager)
+    assert (other.heights, other.angles) == (tuple(4 * x for x in carry.heights), carry.angles)
+    (place, *_), (other, *_) = _aims(settings, Place), _aims(found, Place)
+    assert (other.distance, other.height) == (4 * place.distance, 4 * place.height)
+    (stride, *_), (other, *_) = _aims(settings, Stride), _aims(found, Stride)
+    assert (other.time, other.lift) == (2 * stride.time, 4 * stride.lift)
+    before, after = settings.stages, found.stages
+    assert after[1].until.after == 2 * before[1].until.after
+    assert after[2].until.distance == 4 * before[2].until.distance
+
+
+@pytest.mark.parametrize("known", [falling.UNITS, UNITS])
+def test_units_are_of_fields_that_there_are(known):
+    for shape, units in known.items():
         assert set(units) <= {part.name for part in fields(shape)}, shape
 
 

@@ -20,8 +20,9 @@ from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
-from rotctl.behaviours.touching import Airborne, Launched
-from rotctl.behaviours.until import After, Leaves, Low, Over, Still
+from rotctl.behaviours.touching import Airborne, Launched, Touches
+from rotctl.behaviours.until import After, Leaves, Low, Over, Passed, Still
+from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")
@@ -64,6 +65,8 @@ UNITS: Units = {
     Airborne: all_of(time, "seconds"),
     Still: all_of(time, "seconds"),
     Leaves: all_of(time, "after"),
+    Touches: all_of(time, "after"),
+    Passed: all_of(length, "distance"),
     Over: all_of(length, "within") | all_of(speed, "speed"),
     Launched: all_of(speed, "up") | all_of(length, "height"),
     Ground: all_of(length, "height"),
@@ -82,6 +85,9 @@ UNITS: Units = {
     Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
     Poise: all_of(length, "margin") | all_of(rate, "rate"),
     Shift: all_of(length, "most", "ahead") | all_of(rate, "rate"),
+    Carry: all_of(length, "margin", "heights") | all_of(speed, "speed") | all_of(rate, "eager"),
+    Place: all_of(length, "distance", "height"),
+    Stride: all_of(length, "distance", "lift", "height") | all_of(time, "time"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),
     ReachSettings: all_of(time, "seconds"),

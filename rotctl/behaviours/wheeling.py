@@ -75,7 +75,6 @@ class Carry:
         margin: inside the support that it keeps there [m].
         heights: of the centre of mass over the ground [m], from the one to the other while it turns
         angles: from here to there [deg], in the sense of the target.
-        lean: so far ahead of the middle of what stands it keeps, across the way [m].
     """
 
     law: Literal["carry"]
@@ -87,11 +86,10 @@ class Carry:
     margin: NonNegative
     heights: tuple[Positive, Positive]
     angles: tuple[Finite, Finite]
-    lean: Finite = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, KEY)
+        body_ids(model.mj, self.bodies + self.hands, KEY)
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
@@ -100,7 +98,7 @@ class Carry:
         ends = self._ends(scene)
         rate = support.pendulum_rate(model, state)
         base = Base(support.hull(ends), support.middle(ends), rate)
-        aside = captured(scene, base, across, self.gain, self.margin, self.lean)
+        aside = captured(scene, base, across, self.gain, self.margin)
         ahead = self.eager * (self.speed - dot(state.momentum.com_velocity, along))
         task["acceleration"] = ahead * along + aside * across
         low, high = self.heights
@@ -126,12 +124,12 @@ class Carry:
 class Place:
     """Set a limb down on the way, so far beyond another, or lift it there: point.
 
+    Across the way it goes to where the body comes to rest.
     One that has come down has no weight here: its contacts hold it.
 
     Attributes:
         beyond: body whose place counts,
         distance: along the way from there [m].
-        across: ahead, across the way, of where the body comes to rest [m].
         angles: turned, between which it goes up or down there [deg], in the target's sense.
         height: of the point over the ground in the end [m]; under it, and it comes down for sure.
     """
@@ -139,7 +137,6 @@ class Place:
     law: Literal["place"]
     beyond: str
     distance: Finite
-    across: Finite
     angles: tuple[Finite, Finite]
     height: Finite
 
@@ -152,7 +149,7 @@ class Place:
         body, state, data = int(task["body"]), scene.state, scene.state.data
         along, across = ways(scene)
         from_here = data.xpos[body_id(scene.model.mj, self.beyond, KEY)]
-        aside = rests(scene, across) + self.across
+        aside = rests(scene, across)
         goal = (dot(from_here, along) + self.distance) * along + aside * across
         x, y = float(goal[0]), float(goal[1])
         first = float(scene.begin.place[body][2])
@@ -172,9 +169,10 @@ class Place:
 class Stride:
     """Step to the side with a foot, in a time: point.
 
+    Across the way it goes to where the body comes to rest.
+
     Attributes:
         distance: along the way from where the centre of mass will be when the foot is down [m].
-        across: ahead, across the way, of where the body comes to rest [m].
         time: of the step [s].
         lift: of the foot on its way [m].
         height: of the point over the ground when the foot is down [m].
@@ -182,7 +180,6 @@ class Stride:
 
     law: Literal["stride"]
     distance: Finite
-    across: Finite
     time: Positive
     lift: NonNegative
     height: Finite
@@ -200,7 +197,7 @@ class Stride:
         left = max(self.time * (1.0 - gone), SOONEST)
         com, speed = state.momentum.com, state.momentum.com_velocity
         way = dot(com + left * speed - place, along) + self.distance
-        aside = rests(scene, across) + self.across - dot(place, across)
+        aside = rests(scene, across) - dot(place, across)
         task["acceleration"] = arrival(way, dot(velocity, along), left) * along
         task["acceleration"] += arrival(aside, dot(velocity, across), left) * across
         x, y, _ = place.tolist()
