@@ -116,12 +116,8 @@ class Shift:
 
 def borne_at(scene: Scene, bodies: tuple[str, ...]) -> support.Point:
     """Middle of these bodies, each where it touches the ground, or would, seen from above [m]."""
-    return support.middle(places(scene, bodies))
-
-
-def places(scene: Scene, bodies: tuple[str, ...]) -> list[support.Point]:
-    """Of each of these bodies where it touches the ground, or would, seen from above [m]."""
-    return [_end(scene, body)[:2] for body in body_ids(scene.model.mj, bodies, KEY)]
+    found = body_ids(scene.model.mj, bodies, KEY)
+    return support.middle([_end(scene, body)[:2] for body in found])
 
 
 class _Hands(NamedTuple):
@@ -156,7 +152,7 @@ def _hands(scene: Scene, bodies: tuple[str, ...]) -> _Hands:
 
 
 def _end(scene: Scene, body: int) -> Triple:
-    """Where a body touches the ground; the lowest end of its capsules where it does not [m]."""
+    """Where a body touches the ground; its lowest end where it does not [m]."""
     contacts = scene.state.contacts
     touching = zip(contacts.body.tolist(), contacts.position.tolist(), strict=True)
     found = [place for of, place in touching if of == body]
