@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import product
+from types import SimpleNamespace
 
 import mujoco
 import numpy as np
@@ -76,6 +77,31 @@ def test_it_rests_on_corners_where_mujoco_says_they_are(model):
     assert sole <= touched
     stands = support.ends(model, data, [mj.body("foot_l").id])
     assert {(round(x, 3), round(y, 3)) for x, y in stands} == sole
+
+
+def test_the_lowest_end_is_the_corner_that_touches(model):
+    """Tilted to every side; the engine's contact is half way into the ground."""
+    mj, data = model.mj, mujoco.MjData(model.mj)
+    for axis in ([1, 1, 0], [-1, 1, 0], [1, -1, 0]):
+        data.qpos[:] = mj.qpos0
+        mujoco.mju_axisAngle2Quat(data.qpos[3:7], np.array(axis) / np.sqrt(2), 0.3)
+        mujoco.mj_kinematics(mj, data)
+        low = min(corners_of(model, data, name)[:, 2].min() for name in FEET)
+        data.qpos[2] -= low + 1e-3
+        mujoco.mj_forward(mj, data)
+        (contact,) = (one for one in data.contact if 0 in mj.geom_bodyid[one.geom])
+        body = int(mj.geom_bodyid[contact.geom].max())
+        expected = contact.pos - [0.0, 0.0, 0.5e-3]
+        assert support.lowest_end(model, data, body) == pytest.approx(expected, abs=1e-4)
+
+
+def test_what_touches_nothing_has_no_lowest_end():
+    seen = "<geom size='.1' contype='0' conaffinity='0'/>"
+    mj = mujoco.MjModel.from_xml_string(
+        f"<mujoco><worldbody><body name='ghost'><freejoint/>{seen}</body></worldbody></mujoco>"
+    )
+    with pytest.raises(InputError, match="^behaviour: ghost cannot bear the body$"):
+        support.lowest_end(SimpleNamespace(mj=mj), mujoco.MjData(mj), 1)
 
 
 @pytest.mark.parametrize("points", ["ball", "brick"])

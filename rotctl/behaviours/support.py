@@ -56,8 +56,12 @@ def ends(model: Model, data: mujoco.MjData, bodies: Iterable[int]) -> list[Point
 
 
 def lowest_end(model: Model, data: mujoco.MjData, body: int) -> tuple[float, float, float]:
-    """Of the ends of a body's solid capsules and spheres the lowest [m]."""
-    low, found = inf, (0.0, 0.0, 0.0)
+    """Of the ends of a body's solid capsules and spheres, and the corners of hulls, the lowest [m].
+
+    Raises:
+        InputError: there are none.
+    """
+    low, found = inf, None
     for geom, half, radius in _solid(model.mj, body):
         x, y, z = data.geom_xpos[geom].tolist()
         across = data.geom_xmat[geom].tolist()
@@ -66,6 +70,11 @@ def lowest_end(model: Model, data: mujoco.MjData, body: int) -> tuple[float, flo
             if height < low:
                 low = height
                 found = (x + along * across[2], y + along * across[5], height)
+    for x, y, height in _corners(model.mj, data, body):
+        if height < low:
+            low, found = height, (x, y, height)
+    if found is None:
+        raise InputError(f"behaviour: {model.mj.body(body).name} cannot bear the body")
     return found
 
 
