@@ -1,6 +1,7 @@
 """Dives into water, and what they are judged by."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import mujoco
 import numpy as np
@@ -117,6 +118,24 @@ def test_other_dives_enter_straight_too(behaviour, target, height, shape):
         log = in_memory(build(config))[0].arrays()
         entered += not dive.judge(log, config.criteria, float(target), PERIOD)[1]
     assert entered >= 1
+
+
+def test_a_loose_box_is_not_what_it_stood_on():
+    """Two metres down where the ground is higher, it is not the lowest of the body."""
+    words = ["behaviour=get_up", "terrain=hazards", "terrain.run_in=0", "duration=5"]
+    scenario = build(load(words))
+    staged, state = scenario.behaviour, next(iter(Episode(scenario))).state
+    memory = staged.begin(0.0, state)
+    place = memory.begin.place.copy()
+    place[-1] = [9.0, 0.0, -2.0]
+    box = scenario.model.mj.body(len(place) - 1)
+    assert box.name.startswith("box")
+    lost = replace(state.contacts, position=np.zeros((0, 3)))
+    begun = memory._replace(begin=memory.begin._replace(place=place))
+    scene = staged._scene(begun, state._replace(contacts=lost))
+    ground = SimpleNamespace(height=lambda x, y: 1.0 if x > 8.0 else 0.0)
+    high = SimpleNamespace(mj=scenario.model.mj, ground=ground)
+    assert scene._replace(model=high).floor == 0.0
 
 
 def test_who_leans_over_the_edge_and_loses_it_for_a_step_is_not_over_the_abyss():

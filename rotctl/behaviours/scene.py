@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from rotctl.mechanics.excursion import Excursion, ExcursionName
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.model import Model, is_character
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array
 
@@ -91,5 +91,6 @@ class Scene(NamedTuple):
         if found:
             return max(found)
         x, y, _ = self.state.momentum.com.tolist()
-        first_x, first_y, _ = min(self.begin.place[1:].tolist(), key=lambda place: place[2])
+        own = self.begin.place[is_character(self.model.mj)].tolist()  # a loose box may lie lower
+        first_x, first_y, _ = min(own, key=lambda place: place[2])
         return max(ground.height(x, y), ground.height(first_x, first_y))
