@@ -1,5 +1,6 @@
 """A cartwheel: the ways that it goes, what is set down where, and what it is judged by."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours import support
 from rotctl.behaviours.facing import frame_of
-from rotctl.behaviours.stages import mirrored
+from rotctl.behaviours.stages import Otherwise, mirrored
 from rotctl.behaviours.touching import Touches
 from rotctl.behaviours.until import Passed
 from rotctl.behaviours.wheeling import Carry, Place, Stride, share_of, ways
@@ -93,7 +94,15 @@ def test_stages_twice_mirrored_are_the_stages():
             assert again.turn.angles == stage.turn.angles
             assert again.turn.end == pytest.approx(stage.turn.end)
     tip = next(s for s in scenario.config.behaviour.stages if s.name == "tip")
+    assert mirrored(tip, scenario.model).tasks["reach"].point == tip.tasks["reach"].point
+    sided = replace(tip.tasks["reach"], point=(0.1, 0.2, -0.3))
+    otherwise = Otherwise(Touches("touches", ("forearm_r",)), "stand")
+    tip = replace(tip, tasks={**tip.tasks, "reach": sided}, otherwise=otherwise)
     image = mirrored(tip, scenario.model)
+    assert image.otherwise == Otherwise(Touches("touches", ("forearm_l",)), "stand")
+    assert image.tasks["reach"].point == (0.1, -0.2, -0.3)
+    assert mirrored(image, scenario.model).otherwise == tip.otherwise
+    assert mirrored(image, scenario.model).tasks == tip.tasks
     assert image.tasks["reach"].body == other(tip.tasks["reach"].body)
     assert image.tasks["reach"].aim.beyond == other(tip.tasks["reach"].aim.beyond)
     assert image.until.bodies == tuple(map(other, tip.until.bodies))

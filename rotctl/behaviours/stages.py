@@ -161,6 +161,7 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         flight=flight,
         tasks={name: _of_other_side(task) for name, task in stage.tasks.items()},
         until=stage.until and _of_other_side(stage.until),
+        otherwise=stage.otherwise and _of_other_side(stage.otherwise),
         held_out=tuple(map(other_side, stage.held_out)),
         toes=tuple(map(other_side, stage.toes)),
     )
@@ -182,7 +183,10 @@ def _of_other_side(said: Any) -> Any:
             changed[named.name] = tuple(map(other_side, value))
         elif named.name == "angle" and value is not None and isinstance(said, Turned | Leaves):
             changed[named.name] = -value
-        elif named.name == "aim" and value is not None:
+        elif named.name == "point" and said.kind == "point":  # a margin is of no side
+            x, y, z = value
+            changed[named.name] = (x, -y, z)
+        elif named.name in ("aim", "when") and value is not None:
             changed[named.name] = _of_other_side(value)
     return replace(said, **changed)
 
