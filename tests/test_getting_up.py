@@ -18,6 +18,7 @@ from rotctl.config import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read
+from rotctl.metrics.finish import upright
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -25,6 +26,7 @@ from rotctl.simulation.start import place
 
 FEET = ("foot_l", "foot_r")
 UP = GettingUpCriteria("up", "getting_up", FEET, 4.0, 2.0, 0.8, 20.0, 0.25)
+UPRIGHT = 1.0  # [m] of the centre of mass
 
 
 def lies(head, rolled):
@@ -67,15 +69,15 @@ def prone():
 def test_of_some_starts_one_stands_within_four_seconds(prone):
     """More than half do, each by itself: that none of four does is no chance."""
     _, logs = prone
-    assert any(not judge(log, UP, 1 / 120)[1] for log in logs)
+    assert any(not judge(log, UP, 1 / 120, UPRIGHT)[1] for log in logs)
 
 
 def test_it_kneels_before_it_stands(prone):
     """By the contacts of those that stand: on the hands first, on a knee while the foot comes."""
     _, logs = prone
-    for log in logs:
-        if judge(log, UP, 1 / 120)[1]:
-            continue
+    standing = [log for log in logs if not judge(log, UP, 1 / 120, UPRIGHT)[1]]
+    assert standing
+    for log in standing:
         names = [name.decode() for name in log["model/body"]]
         rows = [np.unique(log["contacts/body"][log["command/stage"] == stage]) for stage in (2, 5)]
         hands, knees = ({names[body] for body in found if body > 0} for found in rows)
@@ -259,20 +261,36 @@ def rows_of(down, up, again=0):
     ],
 )
 def test_what_counts_as_getting_up(rows, change, reason):
-    columns, told = judge(log_of(**(rows | change)), UP, 0.1)
+    columns, told = judge(log_of(**(rows | change)), UP, 0.1, UPRIGHT)
     assert told == reason
     if not reason:
         assert columns["up_from"] == pytest.approx(3.0)
         assert columns["lowest_in_the_end"] == 0.9
 
 
+@pytest.mark.parametrize(
+    ("height", "upright", "stands"),
+    [(0.65, 0.68, True), (0.5, 0.68, False), (0.9, 1.2, False), (0.1, np.nan, True)],
+)
+def test_how_high_it_is_up_is_judged_by_its_size(height, upright, stands):
+    rows = rows_of(30, 30) | {"height": np.full(60, height)}
+    reason = judge(log_of(**rows), UP, 0.1, upright)[1]
+    assert reason == ("" if stands else "is not on its feet in the end")
+
+
+def test_an_adult_is_up_from_80_centimetres():
+    config = load(["behaviour=get_up"])
+    limit = config.criteria.height * upright(build(config).model.mj)
+    assert limit == pytest.approx(0.8, abs=1e-6)
+
+
 def test_attempts_are_counted():
-    assert judge(log_of(**rows_of(30, 30)), UP, 0.1)[0]["attempts"] == 1
-    assert judge(log_of(**rows_of(30, 30, again=2)), UP, 0.1)[0]["attempts"] == 3
+    assert judge(log_of(**rows_of(30, 30)), UP, 0.1, UPRIGHT)[0]["attempts"] == 1
+    assert judge(log_of(**rows_of(30, 30, again=2)), UP, 0.1, UPRIGHT)[0]["attempts"] == 3
 
 
 def test_a_log_without_rows_never_is_up():
     empty = {name: array[:0] for name, array in log_of(**rows_of(1, 1)).items()}
-    columns, reason = judge(empty, UP, 0.1)
+    columns, reason = judge(empty, UP, 0.1, UPRIGHT)
     assert reason == "is not on its feet in the end"
     assert np.isnan(columns["up_from"])

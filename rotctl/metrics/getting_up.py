@@ -27,7 +27,8 @@ class GettingUpCriteria:
         feet: bodies that may touch the ground once it is up.
         within: latest time from which it is up for good [s].
         rest: how long that must last, to the end of the run [s].
-        height: least of the centre of mass above the ground meanwhile [m].
+        height: least of the centre of mass above the ground meanwhile, a share of where it is in
+            the body that stands upright, all its angles zero [-].
         lean: of the trunk meanwhile, at most [deg].
         speed: of the centre of mass over the last half of `rest`, at most [m/s].
     """
@@ -54,8 +55,16 @@ class GettingUpMetrics:
     speed_end: float
 
 
-def measure(log: Arrays, criteria: GettingUpCriteria, period: float) -> GettingUpMetrics:
-    """Measure a run; `period` is the control's [s]."""
+def measure(
+    log: Arrays, criteria: GettingUpCriteria, period: float, upright: float
+) -> GettingUpMetrics:
+    """Measure a run.
+
+    Args:
+        period: of the control [s].
+        upright: see `rotctl.metrics.finish.upright` [m]; NaN where nobody knows, and any height
+            will do.
+    """
     com = floats(log, "trajectory/com")
     if not len(com):
         return GettingUpMetrics(math.nan, 0, math.nan, math.nan, math.nan)
@@ -63,7 +72,7 @@ def measure(log: Arrays, criteria: GettingUpCriteria, period: float) -> GettingU
     cosine = np.clip(floats(log, "trajectory/trunk_axes")[:, 2, 2], -1.0, 1.0)
     lean = np.degrees([math.acos(one) for one in cosine.tolist()])
     down = standing.on_others(log, criteria.feet)
-    down |= (height <= criteria.height) | (lean >= criteria.lean)
+    down |= (height <= criteria.height * upright) | (lean >= criteria.lean)
     row = int(np.flatnonzero(down)[-1]) + 1 if down.any() else 0
     velocity = floats(log, "trajectory/com_velocity")[-round(0.5 * criteria.rest / period) :]
     last = slice(-round(criteria.rest / period), None)
@@ -77,9 +86,11 @@ def measure(log: Arrays, criteria: GettingUpCriteria, period: float) -> GettingU
     )
 
 
-def judge(log: Arrays, criteria: GettingUpCriteria, period: float) -> tuple[Mapping[str, Any], str]:
-    """Columns of a run, and why it is no success; empty if it is one."""
-    m, c = measure(log, criteria, period), criteria
+def judge(
+    log: Arrays, criteria: GettingUpCriteria, period: float, upright: float
+) -> tuple[Mapping[str, Any], str]:
+    """Columns of a run, and why it is no success; empty if it is one. Arguments as of `measure`."""
+    m, c = measure(log, criteria, period, upright), criteria
     steps = len(floats(log, "trajectory/time"))
     stood = steps * period - m.up_from
     rules = (

@@ -97,10 +97,10 @@ def judge(
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
     asked = dict(commanded)
+    upright = math.nan if mj is None else finish.upright(mj)
     if isinstance(criteria, RollingCriteria | FinishCriteria):
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
-            upright = math.nan if mj is None else finish.upright(mj)
             found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
             rolling_log = finish.rolled(log, commanded["finish_commanded"])
             settle = criteria.roll.settle
@@ -122,7 +122,7 @@ def judge(
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, GettingUpCriteria):
-        up, reason = getting_up.judge(log, criteria, period)
+        up, reason = getting_up.judge(log, criteria, period, upright)
         found, asked = dict(up), {}
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
