@@ -146,15 +146,25 @@ class Whirl:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
         momentum, about = scene.state.momentum, scene.turning
+        launch, _ = self.parts(scene.aims, scene.laws)
+        along = dot(momentum.angular, about)
+        rate = -self.calm * (momentum.angular - along * about)
+        rate += (self.wanted(scene) - along) / launch.left(scene) * about
+        task["acceleration"] = solve(momentum.inertia, rate)
+
+    def wanted(self, scene: Scene) -> float:
+        """Angular momentum at take-off about the axis [kg m2/s]."""
         launch, flight = self.parts(scene.aims, scene.laws)
         wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
         wanted = copysign(max(abs(wanted), self.least), scene.target)
-        if self.ceiling:
-            wanted = min(max(wanted, -self.ceiling), self.ceiling)
-        along = dot(momentum.angular, about)
-        rate = -self.calm * (momentum.angular - along * about)
-        rate += (wanted - along) / launch.left(scene) * about
-        task["acceleration"] = solve(momentum.inertia, rate)
+        return min(max(wanted, -self.ceiling), self.ceiling) if self.ceiling else wanted
+
+    def enough(self, scene: Scene) -> bool:
+        """Whether it has that already."""
+        wanted = self.wanted(scene)
+        return dot(scene.state.momentum.angular, scene.turning) * copysign(1.0, wanted) >= abs(
+            wanted
+        )
 
     def parts(
         self, aims: Mapping[str, object], laws: Mapping[str, object]

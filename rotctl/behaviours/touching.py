@@ -5,6 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.launch import Whirl
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
@@ -98,19 +99,28 @@ class Launched:
     """It rises at a speed [m/s], has come to a height [m], or its legs are straight [rad].
 
     Attributes:
-        knee: joints that count as straight below an angle [rad], by name; the mean counts.
+        knee: legs are straight where knees bend less [rad]; the mean counts.
+        turning: task whose aim is `whirl`: without ground and with as much angular momentum as
+            that wants it ends as well. Who came down again would stamp more into it.
     """
 
     kind: Literal["launched"]
     up: Positive
     height: Positive
     knee: Positive
+    turning: str = ""
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
+        if self.turning and scene.airborne > 0.0:
+            whirl = scene.aims.get(self.turning)
+            if not isinstance(whirl, Whirl):
+                raise InputError(f"behaviour: launched: {self.turning!r} is no task that whirls")
+            if whirl.enough(scene):
+                return True
         state, model = scene.state, scene.model
         knees = state.position[model.angles][model.motors("knee", "behaviour.stages.until.knee")]
         return (
