@@ -62,17 +62,15 @@ def of_file(path: Path) -> list[Line]:
 def blamed(overrides: Iterable[str], complaint: str) -> str:
     """A complaint, with the line of a file before it where one of its overrides is what it names.
 
-    That is the one whose key stands at its beginning, before what would be valid.
+    That is the one whose key stands at its beginning, before what would be valid; of several with
+    that key the last, be it of a file or not. What ends like it is asked only where none has it.
     """
     head = complaint.partition(";")[0]
-    named: list[tuple[int, str]] = []
-    for one in overrides:
-        if isinstance(one, Line):
-            key = one.lstrip("+~").partition("=")[0]
-            last = key.rpartition(".")[2]
-            if re.search(rf"(?<![\w.]){re.escape(key)}(?![\w.])", head) or f"'{last}'" in head:
-                named.append((len(key), one.place))
-    return f"{max(named)[1]}: {complaint}" if named else complaint
+    words = {one.lstrip("+~").partition("=")[0]: one for one in overrides}  # the later one counts
+    whole = [key for key in words if re.search(rf"(?<![\w.]){re.escape(key)}(?![\w.])", head)]
+    named = whole or [key for key in words if f"'{key.rpartition('.')[2]}'" in head]
+    word = words[max(named, key=len)] if named else ""
+    return f"{word.place}: {complaint}" if isinstance(word, Line) else complaint
 
 
 def _overrides(
@@ -84,7 +82,7 @@ def _overrides(
                 raise InputError(f"{path}:{lines[(k,)]}: must be a text, such as seed=3")
             if text.startswith(MARK):
                 raise InputError(f"{path}:{lines[(k,)]}: a file names no other one")
-            yield (k,), text
+            yield (k,), _beside(text, path.parent)
     elif isinstance(data, dict):
         yield from _below((), data, path.parent)
     elif data is not None:
@@ -99,14 +97,33 @@ def _below(
         here = (*way, name)
         key = ".".join(map(str, here))
         if key == MODEL and isinstance(value, dict) and isinstance(value.get("file"), str):
-            beside = {**value, "file": str(folder / value["file"])}
-            yield here, f"{key}={_text(beside)}"
+            yield here, _model(value, folder)
         elif isinstance(value, dict) and value:
             yield from _below(here, value, folder)
         elif value is None and key.startswith("~"):
             yield here, key
         else:
-            yield here, f"{key}={value if isinstance(value, str) else _text(value)}"
+            text = f"{key}={value if isinstance(value, str) else _text(value)}"
+            yield here, _beside(text, folder)
+
+
+def _beside(text: str, folder: Path) -> str:
+    """An override as it is on a command line; a model that it names lies in a folder."""
+    if not text.startswith(f"{MODEL}={{"):
+        return text
+    from rotctl.overrides import single  # takes Hydra, which most files do without
+
+    try:
+        value = single(text).value()
+    except InputError:  # whoever composes it tells so
+        return text
+    if isinstance(value, dict) and isinstance(value.get("file"), str):
+        return _model(value, folder)
+    return text
+
+
+def _model(value: dict[str, Any], folder: Path) -> str:
+    return f"{MODEL}={_text({**value, 'file': str(folder / value['file'])})}"
 
 
 def _text(value: Any) -> str:

@@ -74,10 +74,18 @@ def test_hydra_reads_a_value_as_it_was(value):
     assert parsed(f"key=[{_text(value)}]").value() == [value]
 
 
-def test_a_model_lies_beside_the_file_that_names_it(here):
+@pytest.mark.parametrize(
+    "content",
+    [
+        "character: {kind: mjcf, file: robot.xml, strength: 2.0}",
+        '- "character={kind: mjcf, file: robot.xml, strength: 2.0}"',
+        "character: '{kind: mjcf, file: robot.xml, strength: 2.0}'",
+    ],
+)
+def test_a_model_lies_beside_the_file_that_names_it(here, content):
     (here / "robots").mkdir()
     (here / "robots/robot.xml").write_text(text())
-    file = written(here, "character: {kind: mjcf, file: robot.xml, strength: 2.0}", "robots/a.yaml")
+    file = written(here, content, "robots/a.yaml")
     assert to_dict(api.load([file]))["character"]["strength"] == 2.0
 
 
@@ -97,6 +105,9 @@ def test_a_model_lies_beside_the_file_that_names_it(here):
         ("seed: 1\nseed: 2\n", "mine.yaml:2: a key comes twice"),
         ("seed: !!python/name:os.system\n", "mine.yaml:1: has a tag; write plain values"),
         ("seed: ${oc.env:HOME}\n", "mine.yaml:1: override 'seed=${oc.env:HOME}': interpolations"),
+        ("- hydra.run.dir=/tmp/x\n", "mine.yaml:1: override 'hydra.run.dir=/tmp/x': Hydra's own "),
+        ("hydra: {run: {dir: x}}\n", "mine.yaml:1: override 'hydra.run.dir=x': Hydra's own "),
+        ("- 'character={file: a'\n", "mine.yaml:1: override 'character={file: a': cannot be read"),
         ("seed=3\n", "mine.yaml: must be a mapping of keys, or a list of overrides"),
     ],
 )
@@ -124,6 +135,22 @@ def test_what_is_not_of_the_file_blames_it_not(here):
     lines = expanded([written(here, "seed: 3\nbehaviour.speed: 1.0\n"), "hight=2"])
     for complaint in ("unknown key 'hight'; valid: seed", "speeds=3: x", "a.seed.b=3: x"):
         assert blamed(lines, complaint) == complaint
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["@mine.yaml", "seed=-1"], "seed=-1: "),
+        (["seed=-1", "@mine.yaml", "speed=3"], "unknown key 'speed'; "),
+        (["@mine.yaml", "behaviour.speed=x"], 'behaviour.speed="x": '),
+        (["@mine.yaml", "seed=-1", "@worse.yaml"], "worse.yaml:2: seed=-2: "),
+    ],
+)
+def test_the_word_that_counts_is_to_blame(here, capsys, words, said):
+    written(here, "behaviour.speed: 1.0\nseed: 3\n")
+    written(here, "# worse\nseed: -2\n", "worse.yaml")
+    assert main(["show", *words]) == 2
+    assert capsys.readouterr().err.startswith(f"rotctl: {said}")
 
 
 def test_an_empty_file_changes_nothing(here):
