@@ -263,6 +263,20 @@ def test_a_print_is_on_the_surface_of_what_bore_it(log):
         assert min(np.abs(gaps)) < 0.03
 
 
+def test_prints_read_each_dataset_once(log):
+    """A read unpacks the whole dataset: of a long run one for each print took a minute."""
+    names = []
+
+    class Counted:
+        def __getitem__(self, name):
+            names.append(name)
+            return log[name]
+
+    borne(Counted(), stored_model.load(log), ALL)
+    assert "trajectory/qpos" in names
+    assert len(names) == len(set(names))
+
+
 def test_outlines_are_as_tall_as_the_body():
     from rotctl.scenario import model_of
 

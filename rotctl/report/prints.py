@@ -16,6 +16,7 @@ from rotctl.report import axes as draw
 from rotctl.report import stored_model
 from rotctl.report.plot import heading, write
 from rotctl.report.rows import drawable, moderate, window
+from rotctl.report.shapes import triangles
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
@@ -56,13 +57,15 @@ def borne(
     load = np.sqrt((np.asarray(log["contacts/force_realised"], dtype=float)[rows] ** 2).sum(axis=2))
     load /= weight or 1.0
     at, slots = np.nonzero((body > 0) & (body < mj.nbody) & (load > LEAST))
+    states = np.asarray(log["trajectory/qpos"], dtype=float)[rows]  # each read once: it unpacks all
+    places = np.asarray(log["contacts/position"], dtype=float)[rows]
     found = np.zeros((len(at), 3))
     for row in np.unique(at).tolist():
-        data.qpos[:] = log["trajectory/qpos"][rows][row]
+        data.qpos[:] = states[row]
         mujoco.mj_kinematics(mj, data)
         for k in np.flatnonzero(at == row).tolist():
             which = body[row, slots[k]]
-            off = np.asarray(log["contacts/position"])[rows][row, slots[k]] - data.xpos[which]
+            off = places[row, slots[k]] - data.xpos[which]
             found[k] = (data.xmat[which].reshape(3, 3) * off[:, None]).sum(axis=0)
     return body[at, slots].astype(np.int64), found, load[at, slots], at.astype(float)
 
@@ -108,12 +111,18 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
 
 
 def outlines(mj: "mujoco.MjModel", data: "mujoco.MjData") -> list[Array]:
-    """Outlines (n, 2) of a character's capsules and spheres, seen from behind [m]."""
+    """Outlines (n, 2) of a character's capsules, spheres and hulls, seen from behind [m]."""
+    import mujoco
+
     angles = np.linspace(0.0, np.pi, ROUNDED)
     found = []
     for geom in range(mj.ngeom):
         kind, body = int(mj.geom_type[geom]), mj.geom_bodyid[geom]
-        if kind not in ROUND or mj.body_rootid[body] != 1 or not mj.geom_contype[geom]:
+        if mj.body_rootid[body] != 1 or not mj.geom_contype[geom]:
+            continue
+        if kind == mujoco.mjtGeom.mjGEOM_MESH:
+            found.append(_around(mj, data, geom))
+        if kind not in ROUND:
             continue
         radius = float(mj.geom_size[geom, 0])
         half = float(mj.geom_size[geom, 1]) if kind == ROUND[0] else 0.0
@@ -126,3 +135,13 @@ def outlines(mj: "mujoco.MjModel", data: "mujoco.MjData") -> list[Array]:
             ends.append(middle + sign * half * np.array([x, y]) + radius * arc)
         found.append(np.concatenate(ends))
     return found
+
+
+def _around(mj: "mujoco.MjModel", data: "mujoco.MjData", geom: int) -> Array:
+    """Outline (n, 2) of a hull, seen from behind [m]."""
+    from scipy.spatial import ConvexHull
+
+    corners = np.unique(triangles(mj, geom).reshape(-1, 3), axis=0)
+    turned = (data.geom_xmat[geom].reshape(3, 3) * corners[:, None, :]).sum(axis=2)
+    seen = (data.geom_xpos[geom] + turned)[:, 1:] * (-1.0, 1.0)
+    return np.asarray(seen[ConvexHull(seen, qhull_options="QJ").vertices])  # QJ: may be thin
