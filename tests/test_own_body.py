@@ -174,7 +174,7 @@ def test_the_shapes_that_touch_may_be_named(here, proxy):
     assert head() == [0.1]
     assert head(f"character.proxies=['{proxy}']") == [0.12]
     character = load([INLINE, f"character.proxies=['{proxy}']"]).character
-    assert "1 shapes that are named touch; as in the file: torso, " in character.description
+    assert "1 shape that is named touches; as in the file: torso, " in character.description
     (skull,) = (b for b in character.bodies if b.name == "head")
     assert [geom.mass > 0 for geom in skull.geoms] == [True, False]  # the other is looked at
 

@@ -45,7 +45,8 @@ def only_these_touch(
         for body in range(1, mj.nbody)
         if body not in bodies and mj.geom_contype[mj.geom_bodyid == body].any()
     ]
-    touch = f"{sum(chosen)} shapes that are named touch"
+    one = sum(chosen) == 1
+    touch = "1 shape that is named touches" if one else f"{sum(chosen)} shapes that are named touch"
     return [touch + (f"; as in the file: {', '.join(rest)}" if rest else "")]
 
 

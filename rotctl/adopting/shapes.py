@@ -7,6 +7,7 @@ import numpy as np
 
 from rotctl.adopting.tree import Segment
 from rotctl.linear import product
+from rotctl.mechanics.hulls import corners
 from rotctl.rotations import Array, length
 
 LEAST_SEEN = 0.003  # [m] radius, below which a shape is not even looked at
@@ -47,7 +48,7 @@ def _pieces(mj: mujoco.MjModel, data: mujoco.MjData, g: int, hulls: bool) -> lis
         half, radius = max(float(size[1] - size[0]), 0.0) * axes[2], float(min(size[0], size[1]))
         return [Piece(centre - half, centre + half, radius)]
     if kind == mujoco.mjtGeom.mjGEOM_MESH and hulls:
-        return [_hull(centre + product(_corners(mj, g), axes))]
+        return [_hull(centre + product(corners(mj, g), axes))]
     if kind not in (*_BOXES, mujoco.mjtGeom.mjGEOM_ELLIPSOID):
         return []
     if kind == mujoco.mjtGeom.mjGEOM_MESH:  # of which there are the corners of a box
@@ -59,12 +60,6 @@ def _pieces(mj: mujoco.MjModel, data: mujoco.MjData, g: int, hulls: bool) -> lis
     wide = kind in _BOXES and size[middle] > 1.3 * radius
     middles = [centre + side * beside for side in ((-1.0, 1.0) if wide else (0.0,))]
     return [Piece(place - half, place + half, radius) for place in middles]  # a plate's two edges
-
-
-def _corners(mj: mujoco.MjModel, g: int) -> Array:
-    mesh = int(mj.geom_dataid[g])
-    first = int(mj.mesh_vertadr[mesh])
-    return np.asarray(mj.mesh_vert[first : first + int(mj.mesh_vertnum[mesh])].astype(float))
 
 
 def _hull(corners: Array) -> Piece:

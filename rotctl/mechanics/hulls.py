@@ -11,13 +11,15 @@ from rotctl.same import kept
 @kept(most=8)
 def hulls(mj: mujoco.MjModel) -> dict[int, Array]:
     """Geoms that are hulls, with their corners (k, 3) in the geom's frame [m]."""
-    found = {}
-    for geom in np.flatnonzero(mj.geom_type == mujoco.mjtGeom.mjGEOM_MESH).tolist():
-        mesh = int(mj.geom_dataid[geom])
-        first = int(mj.mesh_vertadr[mesh])
-        corners = mj.mesh_vert[first : first + int(mj.mesh_vertnum[mesh])]
-        found[geom] = corners.astype(float)
-    return found
+    every = np.flatnonzero(mj.geom_type == mujoco.mjtGeom.mjGEOM_MESH).tolist()
+    return {geom: corners(mj, geom) for geom in every}
+
+
+def corners(mj: mujoco.MjModel, geom: int) -> Array:
+    """Corners (k, 3) of a geom that is a mesh, in the geom's frame [m]."""
+    mesh = int(mj.geom_dataid[geom])
+    first = int(mj.mesh_vertadr[mesh])
+    return np.asarray(mj.mesh_vert[first : first + int(mj.mesh_vertnum[mesh])].astype(float))
 
 
 def places(mj: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Array:
