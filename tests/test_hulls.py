@@ -20,12 +20,16 @@ from rotctl.mechanics.character import Character
 from rotctl.mechanics.hulls import hulls, places
 from rotctl.mechanics.model import lowest_and_highest
 from rotctl.report import shapes
+from rotctl.report.prints import outlines
 from rotctl.run import make
 from rotctl.scenario import build
 from rotctl.written import to_dict
 
 HULLS = "character={kind: mjcf, file: robot.xml, collision: hulls}"
 FEET = ("foot_l", "foot_r")
+SQUARE = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+FLAT = {"hull": SQUARE, "start": [0.5, 0.5, 0], "size": 0.5**0.5, "end": None}
+BALL = "start and size must be the ball around its hull: [0.5, 0.5, 0] and 0.70711"
 
 
 @pytest.fixture(autouse=True)
@@ -104,6 +108,40 @@ def test_what_touches_nothing_has_no_lowest_end():
         support.lowest_end(SimpleNamespace(mj=mj), mujoco.MjData(mj), 1)
 
 
+def test_from_behind_it_is_outlined(model):
+    """By the corners: the brick is 10 cm wide and 6 cm high."""
+    data = mujoco.MjData(model.mj)
+    mujoco.mj_kinematics(model.mj, data)
+    found = outlines(model.mj, data)
+    assert len(found) == (model.mj.geom_contype[model.mj.geom_bodyid > 0] > 0).sum()
+    feet = [each for each in found if each[:, 1].min() < 1e-4]
+    assert [np.ptp(each, axis=0).round(4).tolist() for each in feet] == [[0.1, 0.06]] * 2
+
+
+def test_of_a_sole_of_many_corners_four_touch(here):
+    """As docs/characters.md says: MuJoCo gives no more of a mesh with a plane, far apart."""
+    ways = np.arange(12) * np.pi / 6
+    ring = np.stack((0.2 * np.cos(ways), 0.05 * np.sin(ways)), axis=1)
+    sole = [(x, y, z) for z in (-0.03, 0.03) for x, y in ring.tolist()]
+    places = "".join("v {} {} {}\n".format(*place) for place in sole)
+    (here / "foot.obj").write_text(places + "f 1 2 3\n")
+    robot = here / "robot.xml"
+    robot.write_text(robot.read_text().replace("foot.stl", "foot.obj"))
+    model = build(load([HULLS])).model
+    mj, data = model.mj, mujoco.MjData(model.mj)
+    data.qpos[:] = mj.qpos0
+    data.qpos[2] -= 1e-3
+    mujoco.mj_forward(mj, data)
+    corners = corners_of(model, data, FEET[0])
+    low = corners[corners[:, 2] < corners[:, 2].min() + 1e-3]
+    assert len(low) > 4
+    foot = mj.body(FEET[0]).id
+    touched = [c.pos[:2] for c in data.contact if foot in mj.geom_bodyid[c.geom]]
+    assert 3 <= len(touched) <= 4
+    gaps = [np.abs(low[:, :2] - place).max(axis=1).min() for place in touched]
+    assert max(gaps) < 1e-3
+
+
 @pytest.mark.parametrize("points", ["ball", "brick"])
 def test_the_outermost_points_are_nearly_the_whole_hull(points):
     generator = np.random.default_rng(1)
@@ -128,9 +166,26 @@ def test_what_is_flat_has_the_corners_of_its_box():
 
 def test_a_hull_without_an_inside_is_told():
     plain = to_dict(load([]))["character"]
-    plain["bodies"][0]["geoms"][0]["hull"] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
+    plain["bodies"][0]["geoms"][0].update(FLAT)
     with pytest.raises(InputError, match="^character: does not compile: .* coplanar vertices"):
         build(replace(load([]), character=checked(Character, plain)))
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({"end": [0, 0, 1]}, "a hull has no end; leave it out"),
+        ({"size": 0.1}, BALL),
+        ({"start": [0, 0, 0]}, BALL),
+    ],
+)
+def test_a_hull_with_what_has_no_effect_is_told(more, said):
+    """Neither the ball nor an end moves anything: they may not say something else."""
+    plain = to_dict(load([]))["character"]
+    plain["bodies"][0]["geoms"][0].update(FLAT | more)
+    with pytest.raises(InputError) as caught:
+        checked(Character, plain)
+    assert said in str(caught.value)
 
 
 @pytest.mark.parametrize(

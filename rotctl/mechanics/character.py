@@ -1,6 +1,7 @@
 """A character from numbers: bodies, joints and capsules of `conf/character/*.yaml` to MjSpec."""
 
 from dataclasses import field
+from math import dist
 from typing import Annotated, Any
 
 import mujoco
@@ -25,6 +26,7 @@ Colour = tuple[Fraction, Fraction, Fraction]
 # Of a whole character, both sides counted: what a model may have out of a file, where a plate is
 # two capsules. Control has room for 250 hinges.
 MOST_CORNERS = 100  # of a hull
+ROUNDED = 5e-4  # [m] its ball may be off: of corners of five decimals, ten times as big
 MOST = {"bodies": 300, "joints": 200, "geoms": 4500, "pairs of geoms in self_collision": 20_000}
 
 
@@ -49,9 +51,10 @@ class Joint:
 class Geom:
     """A capsule from `start` to `end` [m], or a sphere where `end` is absent; radius `size` [m].
 
-    With a `hull`, corners [m] in the body's frame, it is what is between them, and the sphere is
-    the ball around it. `mass` is a fraction of the character's mass. A geom of mass 0 is only
-    seen: it neither weighs nor touches anything.
+    With a `hull`, corners [m] in the body's frame, it is what is between them; `start` and `size`
+    are the ball around it, whose centre is the middle of its box, and it has no `end`. `mass` is
+    a fraction of the character's mass. A geom of mass 0 is only seen: it neither weighs nor
+    touches anything.
     """
 
     name: str
@@ -63,6 +66,21 @@ class Geom:
         field(default=None, metadata=SPARSE)
     )
     colour: Colour | None = None
+
+    def __post_init__(self) -> None:
+        if self.hull is None:
+            return
+        if self.end is not None:
+            raise ValueError("a hull has no end; leave it out")
+        along = list(zip(*self.hull, strict=True))
+        centre = [0.5 * (min(x) + max(x)) for x in along]
+        off = max(map(abs, (a - b for a, b in zip(self.start, centre, strict=True))))
+        radius = max(dist(corner, centre) for corner in self.hull)
+        if max(off, abs(self.size - radius)) > ROUNDED * max(1.0, radius):
+            ball = ", ".join(f"{x:.5g}" for x in centre)
+            raise ValueError(
+                f"start and size must be the ball around its hull: [{ball}] and {radius:.5g}"
+            )
 
 
 @validated(frozen=True, config=STRICT)
