@@ -11,6 +11,7 @@ import sweep_tasks
 from sweep_cli import until
 
 from rotctl.errors import InputError
+from rotctl.sweep import local
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.workers import make_engine
 
@@ -138,3 +139,14 @@ def test_bad_choices_are_named(jobs, scheduler, message):
     with pytest.raises(InputError) as error:
         make_engine(jobs, scheduler)
     assert str(error.value) == message
+
+
+def test_what_was_open_and_is_closed_is_let_go_too():
+    """A descriptor that somebody closed after the count: the next one that is opened is that."""
+    kept, closed = os.open(os.devnull, os.O_RDONLY), os.open(os.devnull, os.O_RDONLY)
+    os.close(kept)
+    os.close(closed)  # the lowest that are free
+    local._let_go({kept, closed})
+    for descriptor in (kept, closed):
+        assert os.fstat(descriptor).st_rdev == os.stat(os.devnull).st_rdev
+        os.close(descriptor)

@@ -201,11 +201,12 @@ def _serve(pipe: Connection, inherited: set[int]) -> None:
 
 
 def _let_go(inherited: set[int]) -> None:
-    """Put nothing in place of descriptors, which somebody here may still close."""
-    nothing = os.open(os.devnull, os.O_RDWR)
-    for descriptor in inherited:
+    """Put nothing in place of descriptors, which somebody here may still close, or has closed."""
+    nothing = os.open(os.devnull, os.O_RDWR)  # may be one that was closed
+    for descriptor in inherited - {nothing}:
         os.dup2(nothing, descriptor, inheritable=False)
-    os.close(nothing)
+    if nothing not in inherited:
+        os.close(nothing)
 
 
 def _call(message: bytes) -> Any:
