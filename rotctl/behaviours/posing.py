@@ -28,16 +28,20 @@ class PoseLaw(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class OverPhase:
-    """Key poses over the phase, so far ahead of it, at most at the target [rad]."""
-
-    pair: PosePair
-    lead: float
+class Memoryless:
+    """A law that remembers nothing."""
 
     def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
         """Nothing."""
         return None
+
+
+@dataclass(frozen=True)
+class OverPhase(Memoryless):
+    """Key poses over the phase, so far ahead of it, at most at the target [rad]."""
+
+    pair: PosePair
+    lead: float
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
@@ -76,7 +80,7 @@ class RiseSettings:
 
 
 @dataclass(frozen=True)
-class Rise:
+class Rise(Memoryless):
     """Joints follow the height, and are given their speeds at it: a jump must not be braked.
 
     Attributes:
@@ -89,10 +93,6 @@ class Rise:
     end: Array
     height: float
     parts: Array
-
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
-        """Nothing."""
-        return None
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
@@ -146,7 +146,7 @@ class TurnSettings:
 
 
 @dataclass(frozen=True)
-class OverTurn:
+class OverTurn(Memoryless):
     """Joints follow the turn, as the slides' hands and arms do: faster where the body is faster.
 
     Attributes:
@@ -158,10 +158,6 @@ class OverTurn:
     end: Array
     first: float
     last: float
-
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
-        """Nothing."""
-        return None
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
@@ -200,7 +196,7 @@ class GlideSettings:
 
 
 @dataclass(frozen=True)
-class Glide:
+class Glide(Memoryless):
     """Joints move without a jerk at either end.
 
     Attributes:
@@ -211,10 +207,6 @@ class Glide:
     start: Array
     end: Array
     seconds: float
-
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
-        """Nothing."""
-        return None
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
@@ -248,15 +240,11 @@ class ReachSettings:
 
 
 @dataclass(frozen=True)
-class Reach:
+class Reach(Memoryless):
     """Joints go to a pose (nu,) [rad] in a time [s], smoothly."""
 
     end: Array
     seconds: float
-
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
-        """Nothing."""
-        return None
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""

@@ -10,7 +10,6 @@ from rotctl.metrics.columns import floats, nearest_places, turns
 from rotctl.report import axes as draw
 from rotctl.report.frame import turns_done
 from rotctl.report.plot import heading, write
-from rotctl.report.rows import drawable, moderate, window
 from rotctl.rotations import Array
 
 SIZE = (6.4, 6.0)  # [inch]
@@ -20,20 +19,8 @@ LEAST = 2.0  # [m] that is shown to either side of who stays where it is
 
 
 def plan(log: RunLog, out: Path, start: float | None = None, end: float | None = None) -> None:
-    """Plot a run from above.
-
-    Args:
-        out: a .png, .svg or .pdf file; replaced if it is there.
-        start: first time [s]; the run's first by default.
-        end: last time [s]; the run's last by default.
-
-    Raises:
-        InputError: `out` has another ending or cannot be written, or a time is not in the log.
-        LogError: the log is damaged.
-    """
-    log = moderate(log)
-    first, last = window(drawable(log, log["trajectory/qpos"]), start, end)
-    write(out, SIZE, lambda figure: _draw(figure, log, slice(first, last + 1)))
+    """Plot a run from above; arguments and errors are those of `rotctl.report.plot.plot`."""
+    write(log, out, SIZE, _draw, start, end)
 
 
 def _draw(figure: Any, log: RunLog, rows: slice) -> None:

@@ -56,20 +56,26 @@ def plot(log: RunLog, out: Path, start: float | None = None, end: float | None =
         InputError: `out` has another ending or cannot be written, or a time is not in the log.
         LogError: the log is damaged or its model is not safe to load.
     """
-    files.require_ending(out, *FORMATS)
-    log = moderate(log)
-    time = drawable(log, log["trajectory/qpos"])
-    first, last = window(time, start, end)
-    write(out, SIZE, lambda figure: _draw(figure, log, slice(first, last + 1)))
+    write(log, out, SIZE, _draw, start, end)
 
 
-def write(out: Path, size: tuple[float, float], draws: Callable[[Any], object]) -> None:
-    """Write a figure of a size [inch] that `draws` fills.
+def write(
+    log: RunLog,
+    out: Path,
+    size: tuple[float, float],
+    draws: Callable[[Any, RunLog, slice], object],
+    start: float | None,
+    end: float | None,
+) -> None:
+    """Write a figure of a run; see `plot`.
 
-    Raises:
-        InputError: `out` is no .png, .svg or .pdf file, or cannot be written.
+    Args:
+        size: of the figure [inch].
+        draws: fills it, given the figure, the log, and its rows from `start` to `end`.
     """
     files.require_ending(out, *FORMATS)
+    log = moderate(log)
+    first, last = window(drawable(log, log["trajectory/qpos"]), start, end)
     kind = FORMATS[out.suffix.lower()]
     mujoco_without_opengl()
     import matplotlib
@@ -79,7 +85,7 @@ def write(out: Path, size: tuple[float, float], draws: Callable[[Any], object]) 
     with matplotlib.rc_context(_STYLE):
         figure = Figure(figsize=size, dpi=DOTS)
         FigureCanvasAgg(figure)
-        draws(figure)
+        draws(figure, log, slice(first, last + 1))
         packed = BytesIO()
         nothing = {"Date": None} if kind == "svg" else {"CreationDate": None}
         figure.savefig(packed, format=kind, metadata={} if kind == "png" else nothing)

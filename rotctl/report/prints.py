@@ -15,7 +15,6 @@ from rotctl.metrics.skeleton import ROUND
 from rotctl.report import axes as draw
 from rotctl.report import stored_model
 from rotctl.report.plot import heading, write
-from rotctl.report.rows import drawable, moderate, window
 from rotctl.report.shapes import triangles
 from rotctl.rotations import Array
 
@@ -30,20 +29,8 @@ ROUNDED = 17  # corners of the half circle at the end of a limb
 
 
 def prints(log: RunLog, out: Path, start: float | None = None, end: float | None = None) -> None:
-    """Plot where the ground bore a body.
-
-    Args:
-        out: a .png, .svg or .pdf file; replaced if it is there.
-        start: first time [s]; the run's first by default.
-        end: last time [s]; the run's last by default.
-
-    Raises:
-        InputError: `out` has another ending or cannot be written, or a time is not in the log.
-        LogError: the log is damaged.
-    """
-    log = moderate(log)
-    first, last = window(drawable(log, log["trajectory/qpos"]), start, end)
-    write(out, SIZE, lambda figure: _draw(figure, log, slice(first, last + 1)))
+    """Plot where the ground bore a body; see `rotctl.report.plot.plot`."""
+    write(log, out, SIZE, _draw, start, end)
 
 
 def borne(
