@@ -18,6 +18,7 @@ from rotctl.control.similar import similar
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
+from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Calm, Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
@@ -147,10 +148,10 @@ def require_fit(config: Config, model: Model) -> None:
         )
     stands = getattr(config.criteria, "landing", getattr(config.criteria, "stand", config.criteria))
     for name in getattr(stands, "feet", ()):
-        models.body_id(model.mj, name, "criteria.feet")
+        body_id(model.mj, name, "criteria.feet")
     for group in getattr(config.criteria, "order", ()):
         for name in group:
-            models.body_id(model.mj, name, "criteria.order")
+            body_id(model.mj, name, "criteria.order")
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
         raise InputError(
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "

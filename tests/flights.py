@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from rotctl.config import composed
-from rotctl.mechanics.model import is_character, lowest_and_highest
+from rotctl.mechanics.bodies import is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
 from rotctl.rotations import quaternion_from_rotation_vector
 from rotctl.scenario import build

@@ -11,7 +11,8 @@ from rotctl.control.kinds import KINDS
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import Stack, collect
 from rotctl.control.task import TASK
-from rotctl.mechanics.model import Model, is_character
+from rotctl.mechanics.bodies import is_character
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.simulation.episode import Episode
 

@@ -12,7 +12,7 @@ from rotctl.behaviours.stages import Stage, mirrored
 from rotctl.behaviours.until import Over
 from rotctl.config import load
 from rotctl.control.task import TASK
-from rotctl.mechanics.model import ROOT_BODY
+from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.state import read
 from rotctl.metrics.acrobatic import HeldCriteria, judge, longest_held
 from rotctl.run import in_memory

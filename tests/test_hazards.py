@@ -9,8 +9,8 @@ import pytest
 from rotctl.config import load
 from rotctl.control import Controller, compiled
 from rotctl.log import RunLog
+from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.contacts import contact_jacobian, realised_forces
-from rotctl.mechanics.model import is_character
 from rotctl.mechanics.state import read
 from rotctl.report import shapes, stored_model
 from rotctl.run import LOG_NAME, run

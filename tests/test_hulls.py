@@ -16,9 +16,9 @@ from rotctl.checked import checked
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.export.meshes import mesh_of
+from rotctl.mechanics.bodies import lowest_and_highest
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.hulls import hulls, places
-from rotctl.mechanics.model import lowest_and_highest
 from rotctl.report import shapes
 from rotctl.report.prints import outlines
 from rotctl.run import make

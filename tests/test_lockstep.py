@@ -14,8 +14,8 @@ from rotctl.control import Controller, compiled
 from rotctl.errors import InputError
 from rotctl.log import read_attributes
 from rotctl.mechanics import model as models
+from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.contacts import contact_jacobian, read_contacts
-from rotctl.mechanics.model import is_character
 from rotctl.mechanics.state import read
 from rotctl.run import in_memory, run
 from rotctl.scenario import build

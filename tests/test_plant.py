@@ -8,7 +8,7 @@ import pytest
 
 from rotctl.config import load
 from rotctl.errors import InputError
-from rotctl.mechanics.model import is_character
+from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.plant import Motors
 from rotctl.run import in_memory
 from rotctl.scenario import build, model_of

@@ -6,7 +6,8 @@ import pytest
 
 from rotctl import scenario
 from rotctl.config import load
-from rotctl.mechanics.model import build, lowest_and_highest
+from rotctl.mechanics.bodies import lowest_and_highest
+from rotctl.mechanics.model import build
 from rotctl.report import gl
 from rotctl.report.scene import opened
 from rotctl.simulation.episode import Episode

@@ -11,7 +11,7 @@ from rotctl import scenario
 from rotctl.behaviours.behaviour import Placement
 from rotctl.config import load
 from rotctl.errors import InputError
-from rotctl.mechanics.model import lowest_and_highest
+from rotctl.mechanics.bodies import lowest_and_highest
 from rotctl.rotations import advance
 from rotctl.run import in_memory
 from rotctl.simulation.episode import Episode

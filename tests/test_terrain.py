@@ -11,7 +11,7 @@ from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import model as models
-from rotctl.mechanics.model import is_character
+from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
 from rotctl.run import LOG_NAME, run

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from rotctl.config import load
+from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.disturbance import Nothing, OnePush
-from rotctl.mechanics.model import is_character
 from rotctl.mechanics.water import Water
 from rotctl.motion import make_pose
 from rotctl.run import in_memory

@@ -12,7 +12,8 @@ from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import solve
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.model import Model
 from rotctl.settings import STRICT, NonNegative, Positive
 
 

@@ -10,7 +10,8 @@ from typing import Annotated
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.mechanics.model import SIDES, Model
+from rotctl.mechanics.bodies import SIDES
+from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, NonNegative, Positive

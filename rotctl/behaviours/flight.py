@@ -23,7 +23,8 @@ from rotctl.behaviours.landing import Contact, Landing
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.meant import instead
-from rotctl.mechanics.model import ROOT_BODY, Model, body_ids, is_character, lowest_and_highest
+from rotctl.mechanics.bodies import ROOT_BODY, body_ids, is_character, lowest_and_highest
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
 from rotctl.motion import make_pose

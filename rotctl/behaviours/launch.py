@@ -18,7 +18,8 @@ from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.linear import solve
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, dot
 from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 

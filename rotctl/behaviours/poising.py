@@ -27,7 +27,8 @@ from rotctl.behaviours.launch import pendulum_rate
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.linear import product
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, Triple, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 

@@ -30,8 +30,9 @@ from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.errors import InputError
 from rotctl.mechanics import excursion
+from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array, advance, dot
 

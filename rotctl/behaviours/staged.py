@@ -33,8 +33,9 @@ from rotctl.control.settings import ContactGains, PoseGains
 from rotctl.control.task import TASK, Tasks, task
 from rotctl.errors import InputError
 from rotctl.mechanics import excursion
+from rotctl.mechanics.bodies import SIDES, body_ids
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
-from rotctl.mechanics.model import SIDES, Model, body_ids
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import make_pose_pair
 from rotctl.rotations import Array, advance, rotation_between

@@ -22,7 +22,8 @@ from rotctl.behaviours.scene import Scene, Step
 from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.linear import product
-from rotctl.mechanics.model import ROOT_BODY, Model, body_id
+from rotctl.mechanics.bodies import ROOT_BODY, body_id
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, about_up
 from rotctl.settings import STRICT, NonNegative, Positive
 

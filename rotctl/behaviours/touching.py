@@ -8,7 +8,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.launch import Whirl
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
-from rotctl.mechanics.model import Model, body_ids, lowest_and_highest
+from rotctl.mechanics.bodies import body_ids, lowest_and_highest
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.terrain.pool import Basin
 from rotctl.settings import STRICT, NonNegative, Positive
 

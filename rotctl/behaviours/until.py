@@ -11,7 +11,8 @@ from rotctl.behaviours.poising import borne_at
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.touching import Airborne, Enters, Lands, Launched, Touches
 from rotctl.behaviours.wheeling import beyond
-from rotctl.mechanics.model import Model, body_ids
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.model import Model
 from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 

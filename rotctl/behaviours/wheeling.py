@@ -18,7 +18,8 @@ from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.linear import product
-from rotctl.mechanics.model import Model, body_id, body_ids
+from rotctl.mechanics.bodies import body_id, body_ids
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 

@@ -13,7 +13,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
-from rotctl.mechanics.model import Model, body_id, is_character
+from rotctl.mechanics.bodies import body_id, is_character
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Time
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Drawn, ends

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.mechanics.model import is_character
+from rotctl.mechanics.bodies import is_character
 from rotctl.rotations import Array
 
 

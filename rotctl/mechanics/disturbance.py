@@ -14,9 +14,10 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
+from rotctl.mechanics.bodies import ROOT_BODY, body_id, is_character
 from rotctl.mechanics.changes import Load, Slip
 from rotctl.mechanics.hulls import hulls
-from rotctl.mechanics.model import ROOT_BODY, Model, body_id, is_character
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Time
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends

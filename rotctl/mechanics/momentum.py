@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from rotctl.linear import product, solve
-from rotctl.mechanics.model import ROOT_BODY
+from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.rotations import Array, cross
 
 

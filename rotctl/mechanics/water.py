@@ -13,9 +13,9 @@ import mujoco
 import numpy as np
 
 from rotctl.linear import product
+from rotctl.mechanics.bodies import ROOT_BODY, is_character
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.hulls import hulls
-from rotctl.mechanics.model import ROOT_BODY, is_character
 from rotctl.mechanics.terrain import Basin
 from rotctl.rotations import Array, cross, dot
 

@@ -4,7 +4,8 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.mechanics.model import ROOT_BODY, Model
+from rotctl.mechanics.bodies import ROOT_BODY
+from rotctl.mechanics.model import Model
 from rotctl.motion.turning import Motion, qpos
 from rotctl.rotations import Array
 

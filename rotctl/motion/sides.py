@@ -5,7 +5,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from rotctl.mechanics.model import SIDES, Model
+from rotctl.mechanics.bodies import SIDES
+from rotctl.mechanics.model import Model
 from rotctl.motion.pose_pair import Turn
 
 Value = TypeVar("Value")

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import yaml
 
-from rotctl.mechanics.model import SIDES, Model
+from rotctl.mechanics.bodies import SIDES
+from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
 from rotctl.motion.turning import Motion
 

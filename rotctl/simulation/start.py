@@ -11,8 +11,9 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
+from rotctl.mechanics.bodies import ROOT_BODY, is_character
 from rotctl.mechanics.hulls import hulls, places
-from rotctl.mechanics.model import ROOT_BODY, Model, is_character
+from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
 from rotctl.simulation import falling as falls
