@@ -157,6 +157,13 @@ def require_fit(config: Config, model: Model) -> None:
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
             f"physics={config.physics.name} give plant.predicted=false"
         )
+    if isinstance(behaviour, RollingSettings):
+        for key, time in behaviour.last_told.items():
+            if time >= config.duration:
+                raise InputError(
+                    f"{key}: what it tells from {time:g} s on never comes, the run is over at "
+                    f"{config.duration:g} s"
+                )
     outside = config.disturbance
     if isinstance(outside, Calm):
         return

@@ -5,7 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from rotctl.log import RunLog, TrajectoryBuffer
+from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
+from rotctl.metrics import disturbed
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario, model_of, require_fit
@@ -53,6 +55,8 @@ def _judged(
     halts = config.behaviour.halts
     judgement = judge(log, config.criteria, commanded, period, wanted, model.mj, halts)
     columns = judgement.columns
+    if not isinstance(config.disturbance, Calm) and not config.disturbance.changes_model:
+        columns = columns | disturbed.measure(log, period)
     reason = ending or judgement.reason
     row = {
         "run_id": run_id,

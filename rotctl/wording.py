@@ -55,6 +55,8 @@ def readable(summary: dict[str, Any]) -> str:
                 f"(commanded from {number('finish_commanded', '.1f')}), "
                 f"{number('stands_at')} m high in the end"
             )
+        if "disturbed_by" in summary:
+            measured.append(f"  disturbed    {_disturbed(summary)}")
     else:
         from rotctl.metrics.judge import COLUMNS  # numpy: what only asks for help needs none
 
@@ -70,6 +72,13 @@ def readable(summary: dict[str, Any]) -> str:
             f"  real time    x {number('real_time_factor', '.1f')}",
         ]
     )
+
+
+def _disturbed(summary: dict[str, Any]) -> str:
+    """What came from outside and when; in words where nothing did."""
+    if not summary["disturbed_by"]:
+        return "by nothing: what was to come did not come in the run"
+    return f"by {summary['disturbed_by']:.3g} N s, from {summary['disturbed_at']:.2f} s on"
 
 
 def _pace(summary: dict[str, Any]) -> str:

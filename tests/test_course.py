@@ -113,6 +113,20 @@ def test_times_of_rates_must_grow():
         load(["behaviour=forward_roll", "+course=turn", "behaviour.course.schedule=[[2,1],[2,2]]"])
 
 
+@pytest.mark.parametrize(
+    ("overrides", "told"),
+    [
+        (["behaviour.pace.schedule=[[3,0.7],[20,0.5]]"], "pace.schedule: what it tells from 20 s"),
+        (["+course=turn", "duration=2"], "course.schedule: what it tells from 2 s"),
+    ],
+)
+def test_what_a_schedule_tells_comes_in_the_run(overrides, told):
+    with pytest.raises(InputError) as raised:
+        build(load(["behaviour=forward_roll", *overrides]))
+    over = "2 s" if "duration=2" in overrides else "20 s"
+    assert str(raised.value) == f"behaviour.{told} on never comes, the run is over at {over}"
+
+
 # ---------------------------------------------------------------- an excursion that turns along
 
 

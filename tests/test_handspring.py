@@ -169,9 +169,9 @@ def test_touch_downs_are_no_bounces_and_no_starts():
         ("forearm_r forearm_l foot_l forearm_l", "forearm_l came down out of order, at 0.40 s"),
         ("forearm_r forearm_l foot_l foot_r head", "head came down out of order, at 0.50 s"),
         ("forearm_r foot_l", "foot_l came down out of order, at 0.20 s"),
-        ("forearm_r forearm_l foot_l", "foot_r never came down"),
-        ("forearm_r forearm_l", "foot_l and foot_r never came down"),
-        ("", "forearm_l and forearm_r never came down"),
+        ("forearm_r forearm_l foot_l", "foot_r had not come down at the end"),
+        ("forearm_r forearm_l", "foot_l and foot_r had not come down at the end"),
+        ("", "forearm_l and forearm_r had not come down at the end"),
     ],
 )
 def test_the_order_counts(order, reason):

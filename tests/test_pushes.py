@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from rotctl.config import load
+from rotctl.errors import InputError
 from rotctl.mechanics.onset import Onset
 from rotctl.metrics.judge import judge
 from rotctl.report.site import pushes
@@ -18,6 +19,8 @@ from rotctl.results.table import Table
 from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.simulation.episode import Episode
+from rotctl.summary import summarise
+from rotctl.wording import readable
 
 PUSH = ("seed=2001", "disturbance=push", "disturbance.time=1.0")
 
@@ -52,6 +55,38 @@ def test_a_push_begins_as_the_phase_is_passed(degrees, behaviour):
     assert all(
         not ((places > min(a, b)) & (places < max(a, b))).any()
         for a, b in zip(earlier, earlier[1:], strict=False)
+    )
+
+
+def told(*overrides):
+    scenario = build(load([*PUSH, "duration=3", *overrides]))
+    buffer, ending = in_memory(scenario)
+    row = summarise(scenario, buffer, ending, 1.0)
+    return row, next((line for line in readable(row).splitlines() if "disturbed" in line), "")
+
+
+def test_a_summary_tells_what_came():
+    row, line = told("disturbance.impulse=20")
+    assert row["disturbed_by"] == pytest.approx(20.0, rel=1e-9)
+    assert row["disturbed_at"] == pytest.approx(1.0, abs=1 / 60 + 1e-9)
+    assert line == f"  disturbed    by 20 N s, from {row['disturbed_at']:.2f} s on"
+
+
+def test_a_summary_tells_that_nothing_came():
+    """A roll that is over before the phase comes was not pushed, though that was asked for."""
+    row, line = told("disturbance.phase=300", "disturbance.time=2.95")
+    assert (row["disturbed_by"], row["disturbed_at"]) == (0.0, None)
+    assert line == "  disturbed    by nothing: what was to come did not come in the run"
+
+
+@pytest.mark.parametrize("phase", ["3150", "-361", "[-90,400]"])
+@pytest.mark.parametrize("kind", ["push", "load", "slippery"])
+def test_a_phase_lies_within_a_revolution(kind, phase):
+    with pytest.raises(InputError) as raised:
+        load([f"disturbance={kind}", f"disturbance.phase={phase}"])
+    shown = "" if phase.startswith("[") else f"={phase}"
+    assert str(raised.value) == (
+        f"disturbance.phase{shown}: must lie within a revolution, from -360 to 360 deg"
     )
 
 

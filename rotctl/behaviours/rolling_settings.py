@@ -107,6 +107,13 @@ class RollingSettings:
         first = self.angular_velocity if self.pace.keep == "rate" else self.speed
         return self.pace.halts(first)
 
+    @property
+    def last_told(self) -> dict[str, float]:
+        """When a schedule changes a command for the last time [s], by its key."""
+        told = {"pace": self.pace, "course": self.course}
+        found = {key: getattr(part, "schedule", ()) for key, part in told.items()}
+        return {f"behaviour.{key}.schedule": all_[-1][0] for key, all_ in found.items() if all_}
+
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
     ) -> Rolling | Finishing:

@@ -15,7 +15,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id, is_character
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.onset import Onset, Time
+from rotctl.mechanics.onset import Onset, Phase, Time
 from rotctl.rotations import Array
 from rotctl.settings import STRICT, Drawn, ends
 
@@ -39,7 +39,7 @@ class Load:
     body: str
     mass: Drawn
     time: Time
-    phase: Drawn | None = None
+    phase: Phase | None = None
     description: str = ""
     changes_model: ClassVar[bool] = True
 
@@ -84,7 +84,7 @@ class Slip:
     kind: Literal["slip"]
     friction: Drawn
     time: Time
-    phase: Drawn | None = None
+    phase: Phase | None = None
     description: str = ""
     changes_model: ClassVar[bool] = True
 

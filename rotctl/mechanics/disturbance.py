@@ -18,7 +18,7 @@ from rotctl.mechanics.bodies import ROOT_BODY, body_id, is_character
 from rotctl.mechanics.changes import Load, Slip
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.onset import Onset, Time
+from rotctl.mechanics.onset import Onset, Phase, Time
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends
 
@@ -83,7 +83,8 @@ class Push:
         direction: from forward towards left [deg]; as time and phase a range to draw from, or
             a number.
         time: when it begins [s].
-        phase: of the behaviour [deg] that it waits for from then on; null does not wait.
+        phase: of the behaviour [deg, from -360 to 360] that it waits for from then on; null does
+            not wait.
     """
 
     name: str
@@ -93,7 +94,7 @@ class Push:
     duration: Annotated[Positive, Field(ge=SHORTEST)]
     direction: Drawn
     time: Time
-    phase: Drawn | None = None
+    phase: Phase | None = None
     description: str = ""
     changes_model: ClassVar[bool] = False
 

@@ -14,10 +14,18 @@ def _from_the_start(time: float | tuple[float, float]) -> float | tuple[float, f
     return time
 
 
+def _within_a_turn(phase: float | tuple[float, float]) -> float | tuple[float, float]:
+    if max(map(abs, ends(phase))) > 360.0:
+        raise ValueError("must lie within a revolution, from -360 to 360 deg")
+    return phase
+
+
 ROUNDING = 1e-9  # [s] by which a run's time, a sum of its steps, may miss a control step's
 
 Time = Annotated[Drawn, AfterValidator(_from_the_start)]
 """Of a run [s]: a number, or a range to draw from."""
+Phase = Annotated[Drawn, AfterValidator(_within_a_turn)]
+"""Of a behaviour [deg]: a number, or a range to draw from."""
 
 
 class Onset:

@@ -127,7 +127,7 @@ def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
             return f"{body} came down out of order, at {time:.2f} s"
     if begun + 1 < len(groups):
         missing = missing or groups[begun + 1]
-    return f"{' and '.join(sorted(missing))} never came down" if missing else ""
+    return f"{' and '.join(sorted(missing))} had not come down at the end" if missing else ""
 
 
 def _other_sides(group: Group) -> Group:

@@ -12,6 +12,7 @@ from pydantic import Field
 from rotctl.metrics import (
     acrobatic,
     appearance,
+    disturbed,
     dive,
     early,
     finish,
@@ -57,6 +58,7 @@ _KINDS = (
     finish,
     acrobatic,
     getting_up,
+    disturbed,
 )
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
