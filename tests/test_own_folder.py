@@ -198,6 +198,10 @@ def test_runs_are_listed_and_compared(here, cli):
         ]
         for seed in sorted((2000, 2001), key=lambda s: _folder(s))
     ]
+    name = said.split()[0]
+    assert cli("inspect", name)[1] == cli("inspect", f"runs/{name}")[1] != ""
+    here.joinpath(name).write_text("of the same name")
+    assert cli("inspect", name)[2] == f"rotctl: {name}: not an HDF5 file\n"
     one, other = _folder(2000), _folder(2001)
     said = cli("diff", one, other / "run.h5")[1].splitlines()
     assert said[0].split() == ["config", str(one), str(other / "run.h5")]

@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 from rotctl.errors import InputError
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
+RUNS = Path("runs")  # where runs go unless somebody says otherwise
 
 # Where a command is added; argparse has no public name for it.
 Commands: TypeAlias = "argparse._SubParsersAction[Any]"
@@ -16,6 +17,7 @@ OVERRIDES_HELP = (
     "config overrides in Hydra's syntax, such as seed=3 (see rotctl list and show), and @FILE.yaml "
     "of such"
 )
+LOG_HELP = "a log, the folder of its run, or its id in runs/"
 
 
 def folder_name(text: str) -> Path:
@@ -26,13 +28,14 @@ def folder_name(text: str) -> Path:
 
 
 def log_file(path: Path) -> Path:
-    """The path of a log, which may be named by the folder of its run.
+    """The path of a log, which may be named by the folder of its run, or by its id in `runs`.
 
     Raises:
         InputError: it is a folder without a log.
     """
     if not os.path.isdir(path):
-        return path
+        named = RUNS / path / LOG_NAME  # by its id, as `rotctl ls` shows it
+        return path if os.path.lexists(path) or not os.path.lexists(named) else named
     if not os.path.lexists(path / LOG_NAME):
         raise InputError(
             f"{path}: is a folder without {LOG_NAME}; name a run, its folder or the log in it; "

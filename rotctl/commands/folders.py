@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from rotctl.commands.arguments import Commands, role_and_name
+from rotctl.commands.arguments import RUNS, Commands, role_and_name
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -99,7 +99,7 @@ def add_ls(commands: Commands) -> None:
         "behaviour, and how it ended.",
     )
     command.add_argument(
-        "folder", type=Path, nargs="?", default=Path("runs"), metavar="DIR", help="[%(default)s]"
+        "folder", type=Path, nargs="?", default=RUNS, metavar="DIR", help="[%(default)s]"
     )
     command.set_defaults(command=ls)
 

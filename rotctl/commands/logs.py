@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from rotctl.bars import bar, following
-from rotctl.commands.arguments import Commands, log_file, second
+from rotctl.commands.arguments import LOG_HELP, Commands, log_file, second
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
 
@@ -16,7 +16,7 @@ def add_render(commands: Commands) -> None:
         help="draw pictures of a logged run",
         description="Draw a run from its log alone; nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--filmstrip",
         type=Path,
@@ -65,7 +65,7 @@ def add_replay(commands: Commands) -> None:
         description="Write one HTML file that works offline: the run in 3D with its contact "
         "forces, beside its plots. Nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--html", type=Path, metavar="OUT.html", help="where to write it [replay.html by the log]"
     )
@@ -96,7 +96,7 @@ def add_plot(commands: Commands) -> None:
         description="Plot rotation, momentum rates, blend, torques, contacts and solver of a run "
         "on one page, from its log alone.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--out",
         type=Path,
@@ -144,7 +144,7 @@ def add_export(commands: Commands) -> None:
         "(CSV, npz), as an animated scene for any viewer (binary glTF), or its model for other "
         "simulators (MJCF). Nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--to", required=True, choices=("bvh", "csv", "npz", "gltf", "mjcf"), help="the format"
     )
@@ -169,7 +169,7 @@ def add_inspect(commands: Commands) -> None:
         description="List a log's datasets with units, its outcome and provenance, and verify "
         "its checksums.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.set_defaults(command=inspect)
 
 
@@ -195,7 +195,7 @@ def add_verify(commands: Commands) -> None:
         "it was. Writes nothing. Exit code 0: the same; 1: not; 2: no log, or none that can be "
         "run. docs/reproducibility.md says where the same bits can be expected.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5")
+    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument("--json", action="store_true", help="print it as JSON on stdout")
     command.set_defaults(command=verify, interrupted="nothing was compared")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl.bars import bar
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, log_file
+from rotctl.commands.arguments import OVERRIDES_HELP, RUNS, Commands, folder_name, log_file
 from rotctl.errors import InputError
 from rotctl.wording import one_line, readable
 
@@ -27,7 +27,7 @@ def add_run(commands: Commands) -> None:
         "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
     )
     command.add_argument(
-        "--out", type=folder_name, default=Path("runs"), help="folder for runs [%(default)s]"
+        "--out", type=folder_name, default=RUNS, help="folder for runs [%(default)s]"
     )
     command.add_argument(
         "--again",
