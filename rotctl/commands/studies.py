@@ -150,7 +150,8 @@ def judge(arguments: argparse.Namespace) -> int:
         found = judge(arguments.folder, wanted, engine, shown.update, metrics)
     groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
     print(printable(markdown(groups)), end="\n\n")
-    print(f"{found.lost} successes are none by these criteria, {found.won} others are")
+    if arguments.overrides:
+        print(f"by these criteria: {found.lost} no longer a success, {found.won} newly one")
     path = arguments.folder / "judged.csv"
     files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(path)
