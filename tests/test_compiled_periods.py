@@ -1,5 +1,6 @@
 """Whole control periods in C against the loop in Python: every bit of every row of a run."""
 
+import gc
 from dataclasses import fields
 
 import mujoco
@@ -215,3 +216,11 @@ def test_mujoco_may_give_up(both):
     with pytest.raises(mujoco.FatalError) as fast:
         in_memory(scenario, look=look)
     assert str(fast.value) == str(slow.value)
+
+
+def test_a_run_leaves_nothing_to_the_garbage_collector():
+    scenario = build(load(["duration=0.1"]))
+    in_memory(scenario)
+    gc.collect()
+    in_memory(scenario)
+    assert gc.collect() == 0

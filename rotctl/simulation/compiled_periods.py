@@ -70,7 +70,7 @@ class CompiledPeriods:
             data=episode.data._address,
             roll=ctypes.addressof(roll.constants),
             rows=ctypes.addressof(rows),
-            crowd=ctypes.cast(crowd, ctypes.c_void_p).value,
+            crowd=ctypes.c_void_p.from_buffer(crowd).value,  # a cast would keep all of this alive
             period=stepper.period,
             substeps=stepper.substeps,
             most=LIMIT,
