@@ -8,6 +8,7 @@ import pytest
 
 from rotctl.config import load
 from rotctl.metrics import appearance
+from rotctl.metrics import skeleton as skeletons
 from rotctl.metrics.skeleton import Capsules, Skeleton, _compiled, _reference, overlap
 from rotctl.native import library
 from rotctl.scenario import model_of
@@ -62,6 +63,26 @@ def test_compiled_places_and_turns_have_the_bits_of_the_reference(terrain):
     qpos = RNG.uniform(-3.0, 3.0, (7, mj.nq))
     for found, wanted in zip(_compiled(mj, qpos), _reference(mj, qpos), strict=True):
         np.testing.assert_array_equal(found, wanted)
+
+
+@pytest.mark.skipif(not library(), reason="there is no C compiler")
+@pytest.mark.parametrize("every", [1, 4])
+def test_compiled_ends_and_overlaps_have_the_bits_of_the_reference(monkeypatch, every):
+    mj, qpos = adult(), RNG.uniform(-1.5, 1.5, (30, adult().nq))
+    limbs, trunk, pairs = appearance._apart(mj)
+    both = []
+    for there in (library(), None):
+        monkeypatch.setattr(skeletons, "library", lambda there=there: there)
+        body = Skeleton(mj, qpos)
+        both.append([body.capsules(geoms, every) for geoms in (limbs, trunk)])
+        both[-1].append(
+            [overlap(*both[-1], [pair]) for pair in pairs] + [overlap(*both[-1], pairs)]
+        )
+    (*compiled, deep), (*reference, wanted) = both
+    for found, known in zip(compiled, reference, strict=True):
+        np.testing.assert_array_equal(found.ends, known.ends)
+    assert deep == wanted
+    assert 0 < sum(each > 0.0 for each in deep) < len(deep)
 
 
 def test_some_rows_are_those_rows():

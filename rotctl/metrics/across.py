@@ -7,7 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.metrics.columns import Arrays, slots_taken
+from rotctl.metrics.columns import Arrays
+from rotctl.metrics.loads import Loads
 from rotctl.metrics.skeleton import Skeleton
 from rotctl.rotations import Array
 
@@ -22,8 +23,9 @@ ORDER = ("hand", "forearm", "shoulder", "hip")
 
 def share(
     log: Arrays,
-    mj: mujoco.MjModel,
     skeleton: Skeleton,
+    all_of_them: Loads,
+    hands: NDArray[np.bool_],
     body: Mapping[str, int],
     weight: float,
     revolutions: Sequence[slice],
@@ -36,64 +38,75 @@ def share(
 
     Args:
         log: arrays by schema path.
+        all_of_them: its contacts.
+        hands: which of them are a hand's, see `at_hands`.
         body: ids by name.
         weight: of the body [N].
         revolutions: rows of each.
     """
     if not revolutions:
         return math.nan
-    loads = _loads(log, mj, skeleton, body, weight)
+    loads = _loads(log, skeleton, all_of_them, hands, body, weight)
     gone = [any(_goes(loads, rows, side) for side in (0, 1)) for rows in revolutions]
     return sum(gone) / len(gone)
 
 
 def _goes(loads: Mapping[str, Array], rows: slice, side: int) -> bool:
     """Whether a revolution goes from the arm of a side, 0 left, over to the other hip."""
-    came = [_first(loads[part][rows, 1 - side if part == "hip" else side]) for part in ORDER]
-    hand, forearm, shoulder, hip = came
-    head = loads[HEAD][rows][:hip].max(initial=0.0)
-    return bool(hand <= forearm <= shoulder < hip < rows.stop - rows.start and head < CROWN)
+    before = 0
+    for part in ORDER:
+        came = _first(loads[part][rows, 1 - side if part == "hip" else side])
+        if came < before or part == "hip" and came == before:
+            return False
+        before = came
+    head = loads[HEAD][rows][:before].max(initial=0.0)
+    return bool(before < rows.stop - rows.start and head < CROWN)
 
 
 def _first(load: Array) -> int:
     """The first row that bears; the number of rows, if none does."""
     bears = load >= BEARING
-    return int(np.argmax(bears)) if bears.any() else len(bears)
+    first = int(bears.argmax())
+    return first if bears[first] else len(bears)
 
 
 def _loads(
-    log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton, body: Mapping[str, int], weight: float
+    log: Arrays,
+    skeleton: Skeleton,
+    all_of_them: Loads,
+    hands: NDArray[np.bool_],
+    body: Mapping[str, int],
+    weight: float,
 ) -> dict[str, Array]:
     """What hands, forearms, shoulders and hips of both sides bear (n, 2), and the head (n,).
 
     In body weights.
     """
-    which = np.asarray(log["contacts/body"])[:, : slots_taken(log)]
-    found = {part: np.zeros((len(which), 2)) for part in ORDER} | {HEAD: np.zeros(len(which))}
-    axes = log["trajectory/trunk_axes"]
-
-    def of(name: str) -> tuple[NDArray[np.int64], Array, Array]:
-        """Rows, upward forces and places (k, 3) of a body's contacts."""
-        rows, slots = np.nonzero(which == body[name])
-        up = np.asarray(log["contacts/force_realised"][rows, slots, 2], dtype=float) / weight
-        return rows, up, np.asarray(log["contacts/position"][rows, slots], dtype=float)
-
+    found = {part: np.zeros((all_of_them.steps, 2)) for part in ORDER}
+    _, row, which, up, place = all_of_them
+    load, axes = up / weight, log["trajectory/trunk_axes"]
+    on = all_of_them.on
     for side, name in enumerate(SIDES):
-        hand = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "hand" + name)
-        rows, up, place = of("forearm" + name)
-        off = place - skeleton.capsules([hand]).ends[0, 0][rows]
-        near = (off**2).sum(axis=1) < HAND**2
-        np.add.at(found["hand"][:, side], rows[near], up[near])
-        np.add.at(found["forearm"][:, side], rows[~near], up[~near])
+        forearm = (which == body["forearm" + name]) & ~hands[side]
+        found["hand"][:, side] += on(hands[side], load)
+        found["forearm"][:, side] += on(forearm, load)
         for part, (_, limb) in TRUNK.items():
-            rows, up, _ = of(limb + name)
-            np.add.at(found[part][:, side], rows, up)
+            found[part][:, side] += on(which == body[limb + name], load)
     for part, (middle, _) in TRUNK.items():
-        rows, up, place = of(middle)
-        left = np.asarray(axes[rows, :, 1], dtype=float)
-        aside = ((place - skeleton.origin(body[middle])[rows]) * left).sum(axis=1)
+        some = np.flatnonzero(which == body[middle])
+        left = np.asarray(axes[row[some], :, 1], dtype=float)
+        aside = ((place[some] - skeleton.origin(body[middle])[row[some]]) * left).sum(axis=1)
         for side, there in enumerate((aside > ASIDE, aside < -ASIDE)):
-            np.add.at(found[part][:, side], rows[there], up[there])
-    rows, up, _ = of(HEAD)
-    np.add.at(found[HEAD], rows, up)
+            np.add.at(found[part][:, side], row[some][there], load[some][there])
+    return found | {HEAD: on(which == body[HEAD], load)}
+
+
+def at_hands(mj: mujoco.MjModel, skeleton: Skeleton, all_of_them: Loads) -> NDArray[np.bool_]:
+    """Which contacts (2, k) of either forearm, left first, are near the middle of its hand."""
+    hands = [mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "hand" + side) for side in SIDES]
+    found = np.zeros((2, len(all_of_them.body)), dtype=bool)
+    for side, middle in enumerate(skeleton.capsules(hands).ends[:, 0]):
+        some = np.flatnonzero(all_of_them.body == mj.geom_bodyid[hands[side]])
+        off = all_of_them.place[some] - middle[all_of_them.row[some]]
+        found[side, some] = (off**2).sum(axis=1) < HAND**2
     return found

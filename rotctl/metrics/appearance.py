@@ -7,8 +7,9 @@ import mujoco
 import numpy as np
 
 from rotctl.metrics import across
-from rotctl.metrics.across import BEARING, HAND, HEAD, SIDES
+from rotctl.metrics.across import BEARING, HEAD, SIDES, at_hands
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
+from rotctl.metrics.loads import loads
 from rotctl.metrics.quantile import percentile
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
@@ -116,19 +117,21 @@ def _over_the_head(
     ]
     if not found:
         return dict.fromkeys(("hands_bear", "across", "tuck_hip", "tuck_knee"), math.nan)
-    hands, height = _load_of_hands(log, mj, skeleton), _height_of_head(log, mj, skeleton)
+    all_of_them, height = loads(log), _height_of_head(log, mj, skeleton)
+    at = at_hands(mj, skeleton, all_of_them)
+    hands = all_of_them.on(at[0], all_of_them.up) + all_of_them.on(at[1], all_of_them.up)
     left = (axes[:, :, 1] * floats(log, "trajectory/trunk_axis")).sum(axis=1)
     forward = direction * float(np.median(left)) > 0.0
-    loads = []
+    arms = []
     for rows in found:
         down = height[rows] < NEAR
         arrival = rows.start + int(np.argmax(down) if down.any() else np.argmin(height[rows]))
         before = slice(max(0, arrival - round(BEFORE / period)), arrival + 1)
-        loads.append(float((hands[before] if forward else hands[rows][up[rows] < INVERTED]).mean()))
+        arms.append(float((hands[before] if forward else hands[rows][up[rows] < INVERTED]).mean()))
     lowest = [rows.start + int(np.argmin(up[rows])) for rows in found]
     return {
-        "across": across.share(log, mj, skeleton, _bodies(mj), _weight(mj), found),
-        "hands_bear": sum(load >= BEARING * _weight(mj) for load in loads) / len(loads),
+        "across": across.share(log, skeleton, all_of_them, at, _bodies(mj), _weight(mj), found),
+        "hands_bear": sum(load >= BEARING * _weight(mj) for load in arms) / len(arms),
         "tuck_hip": _bend(log, "hip_y", lowest),
         "tuck_knee": _bend(log, "knee", lowest),
     }
@@ -163,21 +166,6 @@ def _load_of_head(log: Arrays, head: int) -> tuple[Array, float]:
     up = np.asarray(log["contacts/force_realised"])[:, :some, 2].astype(float)
     peak = np.asarray(log["contacts/force_peak"])[:, :some].astype(float)
     return np.where(there, up, 0.0).sum(axis=1), float(np.where(there, peak, 0.0).max(initial=0.0))
-
-
-def _load_of_hands(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Array:
-    """Upward force (n,) on both [N]."""
-    body = np.asarray(log["contacts/body"])[:, : slots_taken(log)]
-    load = np.zeros(len(body))
-    for side in SIDES:
-        hand = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "hand" + side)
-        middle = skeleton.capsules([hand]).ends[0, 0]
-        rows, slots = np.nonzero(body == mj.geom_bodyid[hand])
-        off = np.asarray(log["contacts/position"][rows, slots], dtype=float) - middle[rows]
-        near = (off**2).sum(axis=1) < HAND**2
-        up = np.asarray(log["contacts/force_realised"][rows[near], slots[near], 2], dtype=float)
-        np.add.at(load, rows[near], up)
-    return load
 
 
 def _height_of_head(log: Arrays, mj: mujoco.MjModel, skeleton: Skeleton) -> Array:

@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
 from rotctl.metrics.halts import Halts, going, unkept
 from rotctl.metrics.quantile import percentile
-from rotctl.metrics.smoothness import chatter, jerk, recovery, sticking
+from rotctl.metrics.smoothness import jerk, recovery, use_of_contacts
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
 
@@ -251,8 +251,7 @@ def measure(
         ground_force_peak=float(floats(log, "contacts/ground_force_peak").max()),
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         jerk=jerk(log, period),
-        chatter=chatter(log, period),
-        sticking=sticking(log),
+        **use_of_contacts(log, period),
         **recovery(log, criteria, progress, axis, period),
         torque_p99_fraction=percentile(fraction, 99),
         solver_failures=solver_failures(log),

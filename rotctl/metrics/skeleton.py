@@ -5,7 +5,7 @@ simulation.
 """
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
@@ -74,11 +74,9 @@ class Skeleton:
     def capsules(self, geoms: Sequence[int], every: int = 1) -> Capsules:
         """Geoms by their ids, in every so-many-th row; each must be a capsule or a sphere."""
         mj = self._mj
-        bodies = mj.geom_bodyid[geoms]
-        place, turn = (part[:, :, None, ::every][:, bodies] for part in (self._place, self._turn))
-        moved = place + _rotated(turn, _ends(mj)[:, geoms, :, None])
-        ends = np.ascontiguousarray(moved.transpose(1, 2, 3, 0))
-        return Capsules(bodies, ends, mj.geom_size[geoms, 0])
+        make = _compiled_ends if library() else _reference_ends
+        ends = make(mj, self._place, self._turn, geoms, every)
+        return Capsules(mj.geom_bodyid[geoms], ends, mj.geom_size[geoms, 0])
 
 
 def _reference(mj: mujoco.MjModel, qpos: Array) -> tuple[Array, Array]:
@@ -101,16 +99,44 @@ def _compiled(mj: mujoco.MjModel, qpos: Array) -> tuple[Array, Array]:
     """As `_reference`; `library()` must be there."""
     rows = np.ascontiguousarray(qpos, dtype=float)
     place, turn = np.empty((3, mj.nbody, len(rows))), np.empty((4, mj.nbody, len(rows)))
-    _function()(mj._address, len(rows), rows.ctypes.data, place.ctypes.data, turn.ctypes.data)
+    at = [array.ctypes.data for array in (rows, place, turn)]
+    _functions().rotctl_skeleton(mj._address, len(rows), *at)
     return place, turn
 
 
+def _reference_ends(
+    mj: mujoco.MjModel, place: Array, turn: Array, geoms: Sequence[int], every: int
+) -> Array:
+    """Ends (k, 2, n, 3) of geoms in every so-many-th row, as `Capsules` has them."""
+    bodies = mj.geom_bodyid[geoms]
+    there, turned = (part[:, :, None, ::every][:, bodies] for part in (place, turn))
+    moved = there + _rotated(turned, _ends(mj)[:, geoms, :, None])
+    return np.ascontiguousarray(moved.transpose(1, 2, 3, 0))
+
+
+def _compiled_ends(
+    mj: mujoco.MjModel, place: Array, turn: Array, geoms: Sequence[int], every: int
+) -> Array:
+    """As `_reference_ends`; `library()` must be there."""
+    steps, which = place.shape[2], np.array(geoms, dtype=np.int32)
+    ends = np.empty((len(which), 2, -(-steps // every), 3))
+    arrays = (place, turn, _ends(mj), which, ends)
+    at = [array.ctypes.data for array in arrays]
+    _functions().rotctl_capsules(mj._address, steps, every, *at[:3], len(which), *at[3:])
+    return ends
+
+
 @lru_cache(maxsize=1)
-def _function() -> Callable[[int, int, int, int, int], None]:
-    function: Callable[[int, int, int, int, int], None] = library().rotctl_skeleton  # type: ignore[union-attr]
-    pointer = ctypes.c_void_p
-    function.argtypes, function.restype = [pointer, ctypes.c_int, *[pointer] * 3], None  # type: ignore[attr-defined]
-    return function
+def _functions() -> ctypes.CDLL:
+    """The library, which knows now what its functions here take."""
+    found = library()
+    assert found is not None
+    pointer, whole = ctypes.c_void_p, ctypes.c_int
+    found.rotctl_skeleton.argtypes = [pointer, whole, *[pointer] * 3]
+    found.rotctl_capsules.argtypes = [pointer, *[whole] * 2, *[pointer] * 3, whole, *[pointer] * 2]
+    found.rotctl_overlap.argtypes = [whole, pointer, pointer, whole, pointer, pointer]
+    found.rotctl_overlap.restype = ctypes.c_double
+    return found
 
 
 @kept(most=8)
@@ -177,6 +203,20 @@ def overlap(one: Capsules, other: Capsules, pairs: Sequence[tuple[int, int]]) ->
     """
     if not pairs:
         return 0.0
+    return (_compiled_overlap if library() else _reference_overlap)(one, other, pairs)
+
+
+def _compiled_overlap(one: Capsules, other: Capsules, pairs: Sequence[tuple[int, int]]) -> float:
+    """As `_reference_overlap`; C leaves out who is seen to be far apart."""
+    which = np.array(pairs, dtype=np.int32)
+    reach = one.radius[which[:, 0]] + other.radius[which[:, 1]]
+    ends = [np.ascontiguousarray(each.ends, dtype=float) for each in (one, other)]
+    at = [array.ctypes.data for array in (*ends, which, reach)]
+    steps = ends[0].shape[2]
+    return float(_functions().rotctl_overlap(steps, *at[:2], len(which), *at[2:]))
+
+
+def _reference_overlap(one: Capsules, other: Capsules, pairs: Sequence[tuple[int, int]]) -> float:
     first, second = np.array(pairs).T
     p, q = one.ends[first], other.ends[second]
     d, e, r = p[:, 1] - p[:, 0], q[:, 1] - q[:, 0], p[:, 0] - q[:, 0]

@@ -6,7 +6,8 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.metrics.columns import Arrays, floats, slots_taken
+from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.loads import taken
 
 LIGHT = 7.0  # [N] a hundredth of an adult: the ground hardly carries what it gives less than that
 
@@ -41,37 +42,26 @@ def jerk(log: Arrays, period: float) -> float:
     return float(np.sqrt((jerk**2).mean())) if len(jerk) else math.nan
 
 
-def chatter(log: Arrays, period: float) -> float:
-    """Bodies that control takes up or lets go of, a second; NaN for too few rows."""
-    held = _held(log)
-    if len(held) < 2:
-        return math.nan
-    return float((held[1:] != held[:-1]).sum() / ((len(held) - 1) * period))
+def use_of_contacts(log: Arrays, period: float) -> dict[str, float]:
+    """`chatter` and `sticking`: how control takes up contacts, and what it keeps without need.
 
-
-def sticking(log: Arrays) -> float:
-    """Share of the time and of the bodies that control keeps still, in which hardly a force acts.
-
-    What the ground does not carry would be free to leave it. NaN where control never uses one.
+    chatter: bodies that it takes up or lets go of, a second; NaN for too few rows.
+    sticking: share of the time and of the bodies that control keeps still, in which hardly a force
+    acts: what the ground does not carry would be free to leave it. NaN where it never uses one.
     """
-    held, some = _held(log), slots_taken(log)
-    each = np.asarray(log["contacts/force_realised"])[:, :some].astype(float)
-    force = np.sqrt((each**2).sum(axis=2))
-    body = np.asarray(log["contacts/body"])[:, :some]
-    carried = np.zeros(held.shape)
-    rows, slots = np.nonzero(force)
-    np.add.at(carried, (rows, body[rows, slots]), force[rows, slots])
-    return float((carried[held] < LIGHT).mean()) if held.any() else math.nan
-
-
-def _held(log: Arrays) -> NDArray[np.bool_]:
-    """Which bodies (steps, n) control keeps still on the ground."""
-    some = slots_taken(log)
-    body, used = (np.asarray(log[f"contacts/{name}"])[:, :some] for name in ("body", "used"))
-    held = np.zeros((len(body), int(body.max(initial=0)) + 1), dtype=bool)
-    rows, slots = np.nonzero(used)
-    held[rows, body[rows, slots]] = True
-    return held
+    row, slot, body = taken(log)
+    steps, bodies = len(log["contacts/body"]), int(body.max(initial=0)) + 1
+    place = row * bodies + body
+    held = np.zeros(steps * bodies, dtype=bool)
+    held[place[np.asarray(log["contacts/used"][row, slot])]] = True
+    each = np.asarray(log["contacts/force_realised"][row, slot], dtype=float)
+    carried = np.bincount(place, np.sqrt((each**2).sum(axis=1)), held.size)
+    by_row = held.reshape(steps, bodies)
+    changes = np.count_nonzero(by_row[1:] != by_row[:-1])
+    return {
+        "chatter": changes / ((steps - 1) * period) if steps > 1 else math.nan,
+        "sticking": float((carried[held] < LIGHT).mean()) if held.any() else math.nan,
+    }
 
 
 def recovery(

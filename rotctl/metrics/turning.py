@@ -12,9 +12,10 @@ def longest_stall(progress: Array, least: float, period: float) -> tuple[float, 
     A stall begins when progress last exceeded its previous mark by `least`, and lasts until
     it does so again, or the run ends.
     """
-    mark, since = progress[0], 0
+    values = progress.tolist()  # plain numbers, which are compared in a fifth of the time
+    mark, since = values[0], 0
     longest, begin = 0, 0
-    for i, value in enumerate(progress):
+    for i, value in enumerate(values):
         if value >= mark + least:
             mark, since = value, i
         if i - since > longest:
@@ -54,7 +55,8 @@ def turned_about(axis: Array, orientation: Array) -> Array:
     """
     before, after = orientation[:-1], orientation[1:]
     half = before[:, :1] * after[:, 1:] - after[:, :1] * before[:, 1:]
-    half -= np.cross(after[:, 1:], before[:, 1:])
+    (a, b, c), (x, y, z) = after[:, 1:].T, before[:, 1:].T
+    half -= np.stack((b * z - c * y, c * x - a * z, a * y - b * x), axis=1)
     same_way = np.where((before * after).sum(axis=1) < 0.0, -1.0, 1.0)  # q and -q are one turn
     turns = 2.0 * same_way * (half * axis[:-1]).sum(axis=1)
     return np.concatenate(([0.0], np.cumsum(turns))) / (2.0 * np.pi)

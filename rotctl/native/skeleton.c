@@ -1,4 +1,4 @@
-// metrics/skeleton.py: where bodies are in every row of a log, in the order of its sums.
+// metrics/skeleton.py: where bodies are in every row of a log and how deep capsules overlap, in the order of its sums.
 #include "layout.h"
 #include "small.h"
 
@@ -48,4 +48,60 @@ void rotctl_skeleton(const mjModel* m, int n, const double* qpos, double* place,
       turn[at] = t.w, turn[size + at] = t.x, turn[2 * size + at] = t.y, turn[3 * size + at] = t.z;
     }
   }
+}
+
+// ends (k, 2, rows, 3) of the middle lines of k geoms, in every so-many-th of n rows; those in their
+// bodies' frames are own (3, ngeom, 2).
+void rotctl_capsules(const mjModel* m, int n, int every, const double* place, const double* turn,
+                     const double* own, int k, const int* geoms, double* ends) {
+  int size = m->nbody * n;
+  for (int i = 0; i < k; i++)
+    for (int end = 0; end < 2; end++) {
+      double here[3];
+      for (int j = 0; j < 3; j++) here[j] = own[2 * (j * m->ngeom + geoms[i]) + end];
+      for (int row = 0; row < n; row += every, ends += 3) {
+        int at = m->geom_bodyid[geoms[i]] * n + row;
+        turned(ends, (Turn){turn[at], turn[size + at], turn[2 * size + at], turn[3 * size + at]}, here);
+        for (int j = 0; j < 3; j++) ends[j] = place[j * size + at] + ends[j];
+      }
+    }
+}
+
+static double share(double part, double whole) {
+  double found = part / (whole > 1e-12 ? whole : INFINITY);
+  return found < 0 ? 0 : found > 1 ? 1 : found;
+}
+
+// How deep segments p and q with a reach between them overlap; 0 where they are seen to be far apart.
+static double depth(const double* const p[2], const double* const q[2], double reach) {
+  double d[3], e[3], r[3], middle[3], apart[3];
+  for (int j = 0; j < 3; j++) {
+    d[j] = p[1][j] - p[0][j], e[j] = q[1][j] - q[0][j], r[j] = p[0][j] - q[0][j];
+    middle[j] = r[j] + 0.5 * (d[j] - e[j]);
+  }
+  double a = along(d, d), c = along(e, e);
+  double far = reach + 0.5 * (sqrt(a) + sqrt(c)) + 1e-6;
+  if (along(middle, middle) > far * far) return 0;
+  double b = along(d, e), f = along(d, r), g = along(e, r);
+  double s = share(b * g - c * f, a * c - b * b), t = share(b * s + g, c);
+  s = share(b * t - f, a);
+  for (int j = 0; j < 3; j++) apart[j] = r[j] + s * d[j] - t * e[j];
+  return reach - sqrt(along(apart, apart));
+}
+
+// The deepest overlap of pairs of capsules, the first's index and the second's, in any row.
+double rotctl_overlap(int rows, const double* first, const double* second, int pairs,
+                      const int* pair, const double* reach) {
+  double deepest = 0;
+  for (int i = 0; i < pairs; i++) {
+    const double *one = first + 6 * pair[2 * i] * rows, *other = second + 6 * pair[2 * i + 1] * rows;
+    for (int row = 0; row < rows; row++, one += 3, other += 3) {
+      const double* const p[2] = {one, one + 3 * rows};
+      const double* const q[2] = {other, other + 3 * rows};
+      double found = depth(p, q, reach[i]);
+      if (!(found <= deepest)) deepest = found;
+      if (isnan(found)) return found;
+    }
+  }
+  return deepest;
 }
