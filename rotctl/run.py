@@ -12,7 +12,6 @@ import numpy as np
 
 from rotctl import files
 from rotctl.checkpoint import Checkpoints
-from rotctl.control import Controller
 from rotctl.documents import from_yaml
 from rotctl.encoding import encoded
 from rotctl.errors import LogError
@@ -20,7 +19,7 @@ from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, encode_run
 from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
-from rotctl.scenario import Making, Scenario, acting, build
+from rotctl.scenario import ANEW, Making, Scenario, acting, build
 from rotctl.schema import Config
 from rotctl.simulation.loop import Look, nobody, simulate
 from rotctl.summary import Summary, broke_down, judged_again
@@ -132,28 +131,28 @@ def make(config: Config) -> EncodedRun:
 
 
 def simulated(
-    config: Config, keeps: Callable[[Summary], bool], controller_of: Making = Controller
+    config: Config, keeps: Callable[[Summary], bool], making: Making = ANEW
 ) -> EncodedRun:
     """Simulate a config and write nothing.
 
     Args:
         keeps: whether the log of a run with that summary row is wanted.
-        controller_of: as for `rotctl.scenario.build`.
+        making: as for `rotctl.scenario.build`.
 
     Raises:
         InputError: the config does not make a run.
     """
-    return _simulated(built(config, controller_of), keeps=keeps)
+    return _simulated(built(config, making), keeps=keeps)
 
 
-def built(config: Config, controller_of: Making = Controller) -> Scenario:
+def built(config: Config, making: Making = ANEW) -> Scenario:
     """The parts of a run, without a word from MuJoCo; see `rotctl.scenario.build`.
 
     Raises:
         InputError: the config does not make a run.
     """
     with quiet():
-        return build(config, controller_of)
+        return build(config, making)
 
 
 def _simulated(

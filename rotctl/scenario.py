@@ -6,10 +6,11 @@ import re
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import similar as asking
@@ -20,6 +21,7 @@ from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Calm, Disturbance
+from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
@@ -65,15 +67,36 @@ class Scenario:
     run_id: str
 
 
-Making = Callable[[Model, ControllerSettings], Controller]
+def behaviour_of(
+    settings: BehaviourSettings,
+    known: Model,
+    control: ControllerSettings,
+    measured: ExcursionSettings,
+) -> Behaviour[Any]:
+    """The behaviour that settings ask for; what it remembers of a run is handed to it anew.
+
+    Raises:
+        InputError: it does not fit the model, or how it is measured.
+    """
+    return settings.make(known, control, measured)
 
 
-def build(config: Config, controller_of: Making = Controller) -> Scenario:
+class Making(NamedTuple):
+    """How the parts of a run are made that depend on nothing that is drawn.
+
+    Where a run is over before the next one begins they may be those of an earlier run of the same
+    settings: a flip is made in 12 ms, as long as a quarter of a second of it is simulated.
+    """
+
+    controller: Callable[[Model, ControllerSettings], Controller] = Controller
+    behaviour: Callable[..., Behaviour[Any]] = behaviour_of
+
+
+ANEW = Making()
+
+
+def build(config: Config, making: Making = ANEW) -> Scenario:
     """Make all parts of a run.
-
-    Args:
-        controller_of: makes controllers, or hands out again what it made for the same: where a
-            run is over before the next one begins, they can share one.
 
     Raises:
         InputError: parts that do not fit together, with one clear line.
@@ -85,9 +108,9 @@ def build(config: Config, controller_of: Making = Controller) -> Scenario:
     model = _varied(config, Variation(config.plant, plant)) if apart else known
     require_fit(config, known)
     asked = asking(config.behaviour, by)
-    behaviour = asked.make(known, control, config.excursion)
+    behaviour = making.behaviour(asked, known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
-    controller = controller_of(known, control)
+    controller = making.controller(known, control)
     motors = Motors(model, config.plant.delay)
     substeps = config.physics.substeps
     senses = Senses(known, model, config.plant, motors, substeps, plant)

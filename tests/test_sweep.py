@@ -275,10 +275,17 @@ def test_a_manifest_of_somebody_else_is_refused(cli, tmp_path):
     )
 
 
-@pytest.mark.parametrize("grid", [["behaviour=stand"], ["plant=randomised"], []])
+@pytest.mark.parametrize(
+    "grid",
+    [
+        *(["behaviour=stand", "duration=0.5"], ["plant=randomised", "duration=0.5"]),
+        ["behaviour=back_flip", "duration=2.5"],  # has landed, and not all feet are set down
+        ["duration=0.5"],
+    ],
+)
 def test_a_worker_that_has_simulated_other_runs_gives_the_same_bits(grid):
-    """Its controller serves one run after the other."""
-    first, second = runs_of("duration=0.5", "seed=1,2", *grid)
+    """Its controller and its behaviour serve one run after the other."""
+    first, second = runs_of("seed=2000,2001", *grid)
     here = [carry_out(ordered(run.config, "never")) for run in (first, second, first)]
     assert [made.trajectory for made in here] == [
         make(run.config).trajectory for run in (first, second, first)

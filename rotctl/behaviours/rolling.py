@@ -41,7 +41,7 @@ if TYPE_CHECKING:  # which makes this one
 
 
 class Rolling:
-    """The rolling behaviour of one run."""
+    """The rolling behaviour, of one run at a time."""
 
     def __init__(
         self,

@@ -75,8 +75,8 @@ class StagedMemory(NamedTuple):
 class _Part:
     """A stage, ready: its tasks, what fills them, and their places among the behaviour's.
 
-    An aim may take a task's weight for a step; `weight` (k, 3) is what they begin with. Each
-    filler has its task as a view of its row.
+    An aim may take a task's weight for a step, and leave the rest of it as it was; `fresh` is what
+    tasks begin a run with. Each filler has its task as a view of its row.
     """
 
     tasks: Tasks
@@ -88,11 +88,11 @@ class _Part:
     contact: ContactGains
     aims: dict[str, Aim]
     stepping: Stepping | None
-    weight: Array
+    fresh: Tasks
 
 
 class Staged:
-    """A staged behaviour of one run."""
+    """A staged behaviour, of one run at a time."""
 
     def __init__(
         self,
@@ -161,9 +161,10 @@ class Staged:
         pose = pose_gains_of(self._control, stage.pose)
         contact = contact_gains_of(self._control, stage.contact)
         stepping = next((aim for aim in aims.values() if isinstance(aim, Stepping)), None)
-        weight = tasks["weight"].copy()
         behind = self._behind(stage)
-        return _Part(tasks, fillers, slots, held_out, behind, pose, contact, aims, stepping, weight)
+        return _Part(
+            tasks, fillers, slots, held_out, behind, pose, contact, aims, stepping, tasks.copy()
+        )
 
     def _behind(self, stage: Stage) -> Array | None:
         """What of each body (nbody,) may only be used where it stands on its front."""
@@ -201,6 +202,8 @@ class Staged:
 
     def begin(self, pitch: float, state: State) -> StagedMemory:
         """Memory at the start."""
+        for part in self._parts:
+            part.tasks[:] = part.fresh
         first = excursion.start(pitch, self._frame.turning)
         memory = StagedMemory(0, _begin(self._model, state, first), first, first, self._frame)
         return self._lying(memory, state)
@@ -264,7 +267,7 @@ class Staged:
         scene = self._scene(memory, state)
         poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
         scene = scene._replace(pose=poses[0], speed=speeds[0])
-        part.tasks["weight"] = part.weight
+        part.tasks["weight"] = part.fresh["weight"]
         part.tasks["axes"] = memory.frame.axes
         for row, kind_name, aim in part.fillers:
             aim.fill(row, kind_name, scene)

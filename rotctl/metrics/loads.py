@@ -28,7 +28,7 @@ class Loads(NamedTuple):
 
     def on(self, some: NDArray[np.bool_], load: Array) -> Array:
         """What (k,) of `some` contacts (k,) adds up to in each row (steps,)."""
-        return np.bincount(self.row[some], load[some], self.steps)
+        return np.bincount(self.row[some], load[some], self.steps).astype(float, copy=False)
 
 
 def taken(log: Arrays) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int32]]:

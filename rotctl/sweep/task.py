@@ -13,6 +13,7 @@ from rotctl.control import Controller
 from rotctl.run import simulated
 from rotctl.run_folder import EncodedRun
 from rotctl.same import kept
+from rotctl.scenario import Making, behaviour_of
 from rotctl.schema import Config
 from rotctl.sweep import keep
 
@@ -44,7 +45,7 @@ def carry_out(order: Order) -> EncodedRun:
     """
     parts: dict[str, Any] = dict(zip(NAMES, map(_unpacked, order.parts), strict=True))
     config = Config(**parts)
-    return simulated(config, lambda summary: keep.kept(order.wish, summary["success"]), _controller)
+    return simulated(config, lambda summary: keep.kept(order.wish, summary["success"]), _SHARED)
 
 
 @kept(most=1000)
@@ -52,5 +53,5 @@ def _packed(part: Any) -> bytes:
     return pickle.dumps(part, pickle.HIGHEST_PROTOCOL)
 
 
-_controller = kept(most=8)(Controller)  # one run at a time in a worker
+_SHARED = Making(kept(most=8)(Controller), kept(most=8)(behaviour_of))  # one run at a time
 _unpacked = lru_cache(maxsize=1000)(pickle.loads)
