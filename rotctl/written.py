@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
+@kept(most=1000)
 def to_dict(settings: "DataclassInstance") -> dict[str, Any]:
     """The settings as plain data, which nobody may change."""
-    parts = {part.name: getattr(settings, part.name) for part in fields(settings)}
-    return {name: _plain_part(part) for name, part in parts.items()}
+    return {name: _plain_part(getattr(settings, name)) for name, _ in _names(type(settings))}
 
 
 @kept(most=1000)

@@ -7,7 +7,7 @@ never started, is a row in a summary and not a gap.
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -58,7 +58,7 @@ def write(folder: Path, entries: Iterable[Entry]) -> None:
     Raises:
         InputError: it cannot be written.
     """
-    lines = "".join(json.dumps(asdict(entry)) + "\n" for entry in entries)
+    lines = "".join(json.dumps(vars(entry)) + "\n" for entry in entries)
     files.replace(folder / MANIFEST_NAME, lines.encode(), durable=True)
 
 
