@@ -27,22 +27,22 @@ def refusal(*overrides):
             "dive_backward",
             -1260,
             10,
-            "to turn so far in 1.67 s asks for 51 kg m2/s in the tightest shape, and legs give at "
-            "most 48; -900 is possible here",
+            "to turn so far in 1.67 s asks for 51 kg m2/s in the tightest shape, and the push "
+            "gives at most 48; -900 is possible here",
         ),
         (
             "dive_backward",
             -540,
             1,
-            "to turn so far in 0.73 s asks for 61 kg m2/s in the tightest shape, and legs give at "
-            "most 48; -180 is possible here",
+            "to turn so far in 0.73 s asks for 61 kg m2/s in the tightest shape, and the push "
+            "gives at most 48; -180 is possible here",
         ),
         (
             "dive_forward",
             1260,
             10,
-            "to turn so far in 1.79 s asks for 47 kg m2/s in the tightest shape, and legs give at "
-            "most 43; 900 is possible here",
+            "to turn so far in 1.79 s asks for 47 kg m2/s in the tightest shape, and the push "
+            "gives at most 43; 900 is possible here",
         ),
         (
             "dive_forward",

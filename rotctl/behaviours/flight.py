@@ -89,7 +89,7 @@ class Flight:
             raise InputError(f"behaviour.shape={shape}: no such shape; {valid}")
         self._settings, self._model, self._frame = settings, model, frame
         self._axis = axis = frame.trunk_axis
-        self._target, self._sense = target, 1.0 if target >= 0.0 else -1.0
+        self._target, self._sense = target + radians(settings.first), 1.0 if target >= 0.0 else -1.0
         self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
         self._tuck = make_pose(model, tightest, f"{key}.{shape}")
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
@@ -209,7 +209,7 @@ class Flight:
             forward, up: velocity at take-off [m/s].
             high: place of the centre of mass there over the floor that it stands on [m].
         """
-        x, y = (scene.state.momentum.com + forward * up / GRAVITY * scene.axes[0])[:2].tolist()
+        x, y = (scene.state.momentum.com + forward * abs(up) / GRAVITY * scene.axes[0])[:2].tolist()
         over, momentum = high + scene.floor - scene.model.ground.height(x, y), 0.0
         for _ in range(2):  # how it lands depends on its momentum, too
             contact = self.contact(momentum if self._pitches else 0.0, forward, up, over)

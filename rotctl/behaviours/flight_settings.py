@@ -40,6 +40,7 @@ class FlightSettings:
             shapes, takes so long [s].
         entry: how it lands, if always alike;
         feet: if on its feet, as its motion then asks for.
+        first: attitude of the pelvis that the behaviour's target counts from [deg].
         coasting: what landed turns on as if with its last speed for so long [s].
     """
 
@@ -52,6 +53,7 @@ class FlightSettings:
     shapes: dict[str, dict[str, Turn]] = field(default_factory=dict)
     entry: EntrySettings | None = None
     feet: LandingSettings | None = None
+    first: Finite = 0.0
     coasting: NonNegative = 0.0
 
     def __post_init__(self) -> None:

@@ -81,7 +81,7 @@ class Launch:
     Attributes:
         bodies: that push.
         gain, margin: as for `lean`, across the way.
-        forward, up: velocity at take-off [m/s].
+        forward, up: velocity at take-off [m/s]; hands are left on the way down.
         height: of the centre of mass over the ground there [m].
         soonest: the time that is left counts as so much at least [s].
     """
@@ -91,7 +91,7 @@ class Launch:
     gain: NonNegative
     margin: NonNegative
     forward: Finite
-    up: Positive
+    up: Finite
     height: Positive
     soonest: Positive
 
@@ -126,7 +126,7 @@ class Whirl:
         flight: name of the stage that flies.
         amount: of the tuck that is planned with [-]: room is left to either side.
         calm: angular momentum across the way fades at this rate [1/s].
-        most: that legs give [kg m2/s], as measured: what needs more is refused.
+        most: that the push gives [kg m2/s], as measured: what needs more is refused.
         least: it is so much, where less would do [kg m2/s]: what a launch gives across the way by
             mistake is then a small part of it, and the body flies longer than planned.
         ceiling: no more is asked for, whatever the flight needs [kg m2/s]; 0 sets none.

@@ -1,7 +1,7 @@
 """What no launch can give is refused before anything is simulated, with the reason.
 
 Time in the air follows from ballistics, the least angular momentum for a turn in that time from
-the tightest shape; how much legs give at all was measured and stands with the launch.
+the tightest shape; how much a push gives at all was measured and stands with the launch.
 """
 
 from collections.abc import Mapping
@@ -72,8 +72,8 @@ def _check_turn(flight: Flight, target: float) -> None:
 def _check_momentum(
     model: Model, axes: Array, target: float, launch: Launch, whirl: Whirl, flight: Flight
 ) -> None:
-    """Raises InputError for more angular momentum than legs give."""
-    back = 2.0 * launch.up / -float(model.gravity[2])  # [s] till it is as high as at take-off
+    """Raises InputError for more angular momentum than the push gives."""
+    back = 2.0 * abs(launch.up) / -float(model.gravity[2])  # [s] till it is as high again
     x, y, _ = (back * launch.forward * axes[0]).tolist()
     time = flight.falls(launch.up, launch.height - model.ground.height(x, y))
     turns = [abs(target)]  # and fewer, till one is possible
@@ -85,5 +85,5 @@ def _check_momentum(
     raise InputError(
         f"{KEY}={degrees(target):g}: to turn so far in {time:.2f} s asks for "
         f"{flight.least_momentum(turns[0], GONE, time):.0f} kg m2/s in the tightest shape, and "
-        f"legs give at most {whirl.most:g}; {fewer or 'no turn is possible'} here"
+        f"the push gives at most {whirl.most:g}; {fewer or 'no turn is possible'} here"
     )

@@ -96,10 +96,18 @@ def judge(
     return {**asdict(stood), **found}, reason
 
 
-def longest_held(log: Arrays, criteria: HeldCriteria, period: float) -> float:
-    """Longest time upside down on the hands alone [s]; `period` is the control's [s]."""
+def longest_held(
+    log: Arrays, criteria: HeldCriteria, period: float, floor: float | None = None
+) -> float:
+    """Longest time upside down on the hands alone [s].
+
+    Args:
+        period: of the control [s].
+        floor: height of what it stands on [m]; without, of the ground below it.
+    """
     down = -floats(log, "trajectory/trunk_axes")[:, 2, 2]
-    height = floats(log, "trajectory/com")[:, 2] - floats(log, "trajectory/ground_height")
+    ground = floats(log, "trajectory/ground_height") if floor is None else floor
+    height = floats(log, "trajectory/com")[:, 2] - ground
     borne = np.asarray(log["contacts/count"]) > 0
     alone = borne & ~standing.on_others(log, criteria.bodies)
     straight = down > math.cos(math.radians(criteria.lean))

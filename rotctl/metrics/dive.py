@@ -11,10 +11,12 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.metrics.acrobatic import HeldCriteria, longest_held
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.flip import HOP, longest_flight, turn
 from rotctl.settings import STRICT, Finite, Positive
 
+PLATFORM = 0.0  # [m] height of its top
 NEAREST = 90.0  # [deg] off the target: beyond, another number of half revolutions is nearer
 COLUMNS = (
     Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),
@@ -34,6 +36,8 @@ class DiveCriteria:
         straight: pose at entry by joint name [rad]; joints not named are not looked at.
         bent: off that pose at most [deg].
         clearance: from the platform, on the way down [m].
+        held: upside down on the platform before it, if asked for: a dive from the hands, which are
+            at the edge as it takes off; its way down begins where the centre of mass is below that.
     """
 
     name: str
@@ -42,6 +46,7 @@ class DiveCriteria:
     straight: dict[str, Finite]
     bent: Positive
     clearance: Positive
+    held: HeldCriteria | None = None
     description: str = ""
 
 
@@ -77,7 +82,12 @@ def judge(
         (m.clearance > c.clearance, f"came within {m.clearance:.2f} m of the platform"),
     )
     reason = next((reason for kept, reason in rules if not kept), "")
-    return {"revolved": turned, **asdict(m)}, reason
+    found = {"revolved": turned, **asdict(m)}
+    if c.held:
+        found["held"] = held = longest_held(log, c.held, period, PLATFORM)
+        if held < c.held.seconds - 1e-6:
+            reason = f"was held upside down for {held:.2f} s, is to be for {c.held.seconds:g}"
+    return found, reason
 
 
 def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -> DiveMetrics:
@@ -92,7 +102,7 @@ def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -
         entry_angle=math.degrees(math.atan2(math.hypot(x, y), -z)),
         entry_sag=math.degrees(math.atan2(x, -z)),
         bent_most=_bent(log, criteria)[row],
-        clearance=_clearance(log, row, math.copysign(1.0, target)),
+        clearance=_clearance(log, row, math.copysign(1.0, target), criteria.held is not None),
         entry_time=row * period,
     )
 
@@ -130,14 +140,16 @@ def _whole(joint: str) -> str:
     return joint.removesuffix("_l").removesuffix("_r")
 
 
-def _clearance(log: Arrays, row: int, sense: float) -> float:
-    """How near the watched points come to where the feet last stood, or behind it [m].
+def _clearance(log: Arrays, row: int, sense: float, hands: bool = False) -> float:
+    """How near the watched points come to where it last stood, or behind it [m].
 
     Who turns backward (`sense` -1) goes backward.
-    Counted from the highest point of the flight on: before it the feet are still at the edge.
+    Counted from the highest point of the flight on: before it the feet are still at the edge. Or,
+    from the `hands`, from where the centre of mass is below the platform: they leave it last.
     """
     first, _ = longest_flight(log)
-    top = first + int(np.argmax(floats(log, "trajectory/com")[first:row, 2]))
+    heights = floats(log, "trajectory/com")[first:row, 2]
+    top = first + int(np.argmax(heights < PLATFORM if hands else heights))
     ahead, up = sense * frame(log)[0], frame(log)[2]
     stood = np.asarray(log["contacts/position"])[first - 1]
     used = np.asarray(log["contacts/body"])[first - 1] >= 0
