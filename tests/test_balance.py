@@ -1,5 +1,6 @@
 """Steps: the support against other geometry, where a foot goes, and who stands by them."""
 
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -154,6 +155,47 @@ def test_legs_do_not_cross_and_no_foot_goes_further_than_legs_reach(
     far = np.linalg.norm(at - middle)
     assert far <= np.hypot(aim.reach, aim.width) + 1e-9
     assert (at - middle) @ outward >= aim.width - 0.01  # the pelvis is tilted and turned a little
+
+
+@pytest.mark.parametrize("facing", ["front", "left"])
+@pytest.mark.parametrize("bow", [0.3, 1.3, 1.9, 2.6])
+def test_who_bows_past_level_knows_its_sides_by_its_left(scenario, standing, facing, bow):
+    """The pelvis's front points behind it then, and the left foot would be put on the right."""
+    swing, stance = feet(scenario)
+    pitch = np.array([np.cos(bow / 2), 0.0, np.sin(bow / 2), 0.0])
+    mujoco.mju_mulQuat(standing.qpos[3:7], pitch, standing.qpos[3:7].copy())
+    scene = scene_of(scenario, standing, step=Step(swing, stance, 0.0))
+    aim = replace(law(scenario), facing=facing)
+    across = support.middle(support.ends(scenario.model, standing, [stance]))[1]
+    to_left = aim.landing(scene, 0.1)[1] - across
+    upright = bow < np.pi / 2
+    assert (to_left > 0.0) == (upright or facing == "left")
+    if facing == "left":
+        assert to_left >= aim.width - 0.01
+
+
+@pytest.mark.parametrize(
+    ("apart", "beyond", "first"),
+    [(0.2, 0.1, "near"), (0.5, 0.05, "far"), (0.2, 0.5, "near")],
+    ids=["narrow", "wide", "narrow and far out"],
+)
+def test_in_a_wide_stance_the_other_foot_comes_in_first(scenario, standing, apart, beyond, first):
+    """Feet so far apart [m]; the capture point so far beyond the left one [m]."""
+    left, right = feet(scenario)
+    mj, hips = scenario.model.mj, scenario.model.motors("hip_x", "here")
+    places = mj.jnt_qposadr[mj.actuator_trnid[hips, 0]]
+    for _ in range(4):  # the feet lie on arcs about the hips
+        mujoco.mj_kinematics(mj, standing)
+        missing = apart - (standing.xpos[left, 1] - standing.xpos[right, 1])
+        standing.qpos[places] += 0.5 * missing / 0.85
+    mujoco.mj_forward(mj, standing)
+    rate = np.sqrt(9.81 / standing.subtree_com[1, 2])
+    speed = rate * (standing.xpos[left, 1] + beyond - standing.subtree_com[1, 1])
+    scene = scene_of(scenario, standing, (0.0, speed, 0.0))
+    for narrow, expected in ((0.3, first), (0.0, "near")):
+        aim = replace(law(scenario), narrow=narrow, spin=0.0)
+        swing = aim.swinging(scene, [left, right])
+        assert swing == {"near": left, "far": right}[expected]
 
 
 @pytest.mark.parametrize(("way", "speed"), [(0.4, 0.0), (-0.2, 1.5), (0.0, -2.0)])

@@ -33,6 +33,8 @@ LATE = 1.5  # swings, after which one ends that met no ground
 REACH_DOWN = 0.85  # of a swing, from which on the foot
 UNDER = 0.03  # [m] is wanted so far under the ground: it meets it with some speed
 SOONEST = 0.05  # [s] the shortest time to go that a swing is steered with
+Facing = Literal["front", "left"]
+FACING = {"front": support.forward, "left": support.forward_of_left}
 STAGGERED = 0.15  # [m] feet so far one before the other: the one behind swings
 
 
@@ -52,6 +54,10 @@ class Stepping:
         width: of the stance at least, from foot to foot; legs do not cross [m].
         aside: capture points further to a side than this are followed by that side's foot [m].
         fall: no step begins while the body falls faster: two legs have to brake it [m/s].
+        facing: axis of the pelvis by which it knows its sides: its front, or its left, which stays
+            level however far it bows. Past level its front points behind it.
+        narrow: in a stance wider than this the foot beyond which the capture point lies does not
+            swing out of reach: the other one comes in first [m]; 0 lets it.
     """
 
     law: Literal["step"]
@@ -66,6 +72,8 @@ class Stepping:
     width: NonNegative
     aside: NonNegative
     fall: Positive
+    facing: Facing = "front"
+    narrow: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -88,7 +96,7 @@ class Stepping:
         hangs = any(support.lifted(model, state, foot) for foot in (left, right))
         if not hangs and support.outside(corners, self.capture_point(scene)) < self.margin:
             return step
-        swing = self._swing(scene, touching)
+        swing = self.swinging(scene, touching)
         return Step(swing, right if swing == left else left, state.time)
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -117,15 +125,16 @@ class Stepping:
         fx, fy = middle = support.middle(ends)
         x, y = self.capture_point(scene)
         px, py = support.within(support.hull(ends), middle, (x, y), 0.0)
-        grown = exp(support.pendulum_rate(model, state) * left)
+        grown = self._grown(scene, left)
         dx, dy = px + grown * (x - px) - fx, py + grown * (y - py) - fy
         far = sqrt(dx * dx + dy * dy)
         beyond = 1.0 + self.over / far if far > 0.0 else 1.0
-        ahead, aside = _turned(beyond * dx, beyond * dy, support.forward(state, ROOT_BODY), -1.0)
+        forward = FACING[self.facing](state, ROOT_BODY)
+        ahead, aside = _turned(beyond * dx, beyond * dy, forward, -1.0)
         share = min(1.0, self.reach / (sqrt(ahead * ahead + aside * aside) or 1.0))
         side = 1.0 if scene.step.swing == self._feet(model)[0] else -1.0
         aside = side * max(side * share * aside, self.width)
-        dx, dy = _turned(share * ahead, aside, support.forward(state, ROOT_BODY), 1.0)
+        dx, dy = _turned(share * ahead, aside, forward, 1.0)
         return fx + dx, fy + dy
 
     def capture_point(self, scene: Scene) -> Point:
@@ -137,25 +146,31 @@ class Stepping:
         share = self.spin * rate / (model.mass * -float(model.gravity[2]))
         return x + share * float(momentum.angular[1]), y - share * float(momentum.angular[0])
 
-    def _swing(self, scene: Scene, touching: list[int]) -> int:
-        """The foot to swing: never the only one that stands."""
+    def swinging(self, scene: Scene, touching: list[int]) -> int:
+        """The foot to swing, of those that touch the ground: never the only one that stands."""
         model, state = scene.model, scene.state
         left, right = feet = self._feet(model)
         (lx, ly), (rx, ry) = (support.middle(support.ends(model, state.data, (f,))) for f in feet)
         x, y = self.capture_point(scene)
-        forward = support.forward(state, ROOT_BODY)
+        forward = FACING[self.facing](state, ROOT_BODY)
         _, aside = _turned(x - 0.5 * (lx + rx), y - 0.5 * (ly + ry), forward, -1.0)
+        ahead, wide = _turned(lx - rx, ly - ry, forward, -1.0)
         near, far = (left, right) if aside > 0.0 else (right, left)
         if left not in touching or right not in touching:
             return right if left in touching else left
         if abs(aside) > self.aside:
-            return near
-        ahead, _ = _turned(lx - rx, ly - ry, forward, -1.0)
+            way = (abs(aside) + 0.5 * abs(wide)) * self._grown(scene, self.time)
+            far_out = self.narrow > 0.0 and abs(wide) > self.narrow and way > self.reach
+            return far if far_out else near
         if abs(ahead) > STAGGERED:
             to_left = (lx - x) ** 2 + (ly - y) ** 2
             to_right = (rx - x) ** 2 + (ry - y) ** 2
             return left if to_left > to_right else right
         return far
+
+    def _grown(self, scene: Scene, time: float) -> float:
+        """How many times further from the pressure a capture point is after a time [s]."""
+        return exp(support.pendulum_rate(scene.model, scene.state) * time)
 
     def _feet(self, model: Model) -> tuple[int, int]:
         return _ids(model.mj, self.bodies)
@@ -163,16 +178,21 @@ class Stepping:
 
 @validated(frozen=True, config=STRICT)
 class Heading:
-    """Turn a foot that swings to where the pelvis faces; no weight for others: attitude."""
+    """Turn a foot that swings to where the pelvis faces; no weight for others: attitude.
+
+    Attributes:
+        facing: as for `step`.
+    """
 
     law: Literal["heading"]
+    facing: Facing = "front"
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
-        x, y = support.forward(scene.state, ROOT_BODY)
+        x, y = FACING[self.facing](scene.state, ROOT_BODY)
         task["target"] = about_up(atan2(y, x))
         if scene.step.swing != int(task["body"]):
             task["weight"] = 0.0

@@ -153,6 +153,13 @@ def forward(state: State, body: int) -> Point:
     return x / length, y / length
 
 
+def forward_of_left(state: State, body: int) -> Point:
+    """Across where a body's left points, seen from above, unit: its front, also past a bow."""
+    x, y = state.data.xmat[body].reshape(3, 3)[:2, 1].tolist()
+    length = sqrt(x * x + y * y) or 1.0
+    return y / length, -x / length
+
+
 def pendulum_rate(model: Model, state: State) -> float:
     """Omega of the inverted pendulum [1/s]: the capture point is c + v / omega."""
     x, y, z = state.momentum.com.tolist()
