@@ -171,6 +171,7 @@ CASES = {
         {
             r"behaviour\.tasks\.balance\.aim\.rise": "of crouches",
             r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together",
+            r"behaviour\.tasks\.swing\.aim\.narrow": "of wide stances, as in test_balance",
         },
         seconds=0.8,
     ),
