@@ -58,11 +58,19 @@ def readable(summary: dict[str, Any]) -> str:
         if "disturbed_by" in summary:
             measured.append(f"  disturbed    {_disturbed(summary)}")
     else:
-        from rotctl.metrics.judge import COLUMNS  # numpy: what only asks for help needs none
+        from rotctl.metrics import peaks  # numpy: what only asks for help needs none
+        from rotctl.metrics.judge import COLUMNS
 
-        known = [column for key, column in COLUMNS.items() if key in summary]
+        known = [
+            column
+            for key, column in COLUMNS.items()
+            if key in summary and column not in peaks.COLUMNS
+        ]
         wide = max((len(column.title) for column in known), default=0)
         measured = [f"  {c.title:{wide}}  {shown(c.name)} {c.unit}".rstrip() for c in known]
+        if all(f"{joint}_speed" in summary for joint in peaks.GROUPS):
+            speeds = (f"{joint} {number(f'{joint}_speed', '.0f')}" for joint in peaks.GROUPS)
+            measured.append(f"  joints       {', '.join(speeds)} rad/s at most until it lands")
     return "\n".join(
         [
             f"{name}  seed {seed}  run {run}  {verdict}",

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.metrics import peaks
 from rotctl.metrics.acrobatic import HeldCriteria, longest_held
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.flip import HOP, longest_flight, turn
@@ -82,7 +83,7 @@ def judge(
         (m.clearance > c.clearance, f"came within {m.clearance:.2f} m of the platform"),
     )
     reason = next((reason for kept, reason in rules if not kept), "")
-    found = {"revolved": turned, **asdict(m)}
+    found = {"revolved": turned, **asdict(m), **peaks.measure(log, row or 0)}
     if c.held:
         found["held"] = held = longest_held(log, c.held, period, PLATFORM)
         if held < c.held.seconds - 1e-6:

@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import standing
+from rotctl.metrics import peaks, standing
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.settings import STRICT, Positive
@@ -68,7 +68,8 @@ def judge(
         reason = f"turned {flip.revolved:.0f} deg of {target:g}"
     elif not flip.flight_time > criteria.flight:
         reason = f"was in the air for {flip.flight_time:.2f} s"
-    return {**asdict(stood), **asdict(flip)}, reason
+    worked = peaks.measure(log, longest_flight(log)[1])
+    return {**asdict(stood), **asdict(flip), **worked}, reason
 
 
 def measure(log: Arrays, criteria: FlipCriteria, period: float) -> FlipMetrics:

@@ -20,6 +20,7 @@ from rotctl.metrics import (
     getting_up,
     orientation,
     pace,
+    peaks,
     rolling,
     standing,
 )
@@ -55,6 +56,7 @@ _KINDS = (
     orientation,
     flip,
     dive,
+    peaks,
     finish,
     acrobatic,
     getting_up,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.meant import instead
-from rotctl.metrics import appearance, pace, rolling
+from rotctl.metrics import appearance, pace, peaks, rolling
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
@@ -22,7 +22,7 @@ from rotctl.rotations import Array
 # Too many for a table that people read.
 IN_FILES_ONLY = {
     *rolling.IN_FILES_ONLY,
-    *(column.name for kind in (appearance, pace) for column in kind.COLUMNS),
+    *(column.name for kind in (appearance, pace, peaks) for column in kind.COLUMNS),
 }
 Name = tuple[object, ...]  # of a group: the values of its keys
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
