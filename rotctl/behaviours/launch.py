@@ -84,6 +84,8 @@ class Launch:
         forward, up: velocity at take-off [m/s]; hands are left on the way down.
         height: of the centre of mass over the ground there [m].
         soonest: the time that is left counts as so much at least [s].
+        most: take-off that may be commanded, as measured: beyond it legs give no more speed, and
+            less else [m/s]; 0 sets no limit.
     """
 
     law: Literal["launch"]
@@ -94,6 +96,7 @@ class Launch:
     up: Finite
     height: Positive
     soonest: Positive
+    most: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""

@@ -15,6 +15,8 @@ from rotctl.rotations import Array
 
 GONE = radians(60.0)  # already turned at take-off: as far as the strongest launches here
 KEY = "behaviour.target_excursion"
+SPEED = "behaviour.take_off"
+FASTER = tuple(tenths / 10.0 for tenths in range(1, 60))  # [m/s] the first that would do is told
 
 
 def check(
@@ -23,6 +25,7 @@ def check(
     target: float,
     aims: Mapping[str, object],
     laws: Mapping[str, object],
+    take_off: float | None = None,
 ) -> None:
     """Look at a stage's launch, if it has one, and at the flight that it is for.
 
@@ -39,7 +42,8 @@ def check(
             launch, flight = whirl.parts(aims, laws)
             _check_way(launch, flight, target)
             _check_turn(flight, target)
-            _check_momentum(model, axes, target, launch, whirl, flight)
+            _check_speed(launch, take_off)
+            _check_momentum(model, axes, target, launch, whirl, flight, take_off)
 
 
 def _check_way(launch: Launch, flight: Flight, target: float) -> None:
@@ -69,21 +73,47 @@ def _check_turn(flight: Flight, target: float) -> None:
         )
 
 
+def _check_speed(launch: Launch, take_off: float | None) -> None:
+    """Raises InputError for a speed that legs do not give."""
+    if take_off and launch.most and take_off > launch.most:
+        raise InputError(
+            f"{SPEED}={take_off:g}: legs give no more than at {launch.most:g} m/s; "
+            f"give that or less"
+        )
+
+
 def _check_momentum(
-    model: Model, axes: Array, target: float, launch: Launch, whirl: Whirl, flight: Flight
+    model: Model,
+    axes: Array,
+    target: float,
+    launch: Launch,
+    whirl: Whirl,
+    flight: Flight,
+    take_off: float | None,
 ) -> None:
     """Raises InputError for more angular momentum than the push gives."""
-    back = 2.0 * abs(launch.up) / -float(model.gravity[2])  # [s] till it is as high again
-    x, y, _ = (back * launch.forward * axes[0]).tolist()
-    time = flight.falls(launch.up, launch.height - model.ground.height(x, y))
+    time = _time(model, axes, launch, flight, launch.up)
     turns = [abs(target)]  # and fewer, till one is possible
     while turns[-1] > 0.0 and flight.least_momentum(turns[-1], GONE, time) > whirl.most:
         turns.append(turns[-1] - tau)
     if len(turns) == 1:
         return
     fewer = f"{degrees(copysign(turns[-1], target)):g} is possible" if turns[-1] > 0.0 else ""
+    if take_off and not fewer:
+        for speed in FASTER:
+            longer = _time(model, axes, launch, flight, launch.up * speed / take_off)
+            if flight.least_momentum(turns[0], GONE, longer) <= whirl.most:
+                fewer = f"with {SPEED}={speed:g} it is possible"
+                break
     raise InputError(
         f"{KEY}={degrees(target):g}: to turn so far in {time:.2f} s asks for "
         f"{flight.least_momentum(turns[0], GONE, time):.0f} kg m2/s in the tightest shape, and "
         f"the push gives at most {whirl.most:g}; {fewer or 'no turn is possible'} here"
     )
+
+
+def _time(model: Model, axes: Array, launch: Launch, flight: Flight, up: float) -> float:
+    """In the air, taking off upward at a speed [m/s], until it lands as usual [s]."""
+    back = 2.0 * abs(up) / -float(model.gravity[2])  # [s] till it is as high as at take-off
+    x, y, _ = (back * launch.forward * axes[0]).tolist()
+    return flight.falls(up, launch.height - model.ground.height(x, y))

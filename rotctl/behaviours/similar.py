@@ -80,7 +80,7 @@ UNITS: Units = {
     | all_of(speed, "speed", "sink")
     | all_of(rate, "eager", "steady"),
     Launch: all_of(length, "margin", "height")
-    | all_of(speed, "forward", "up")
+    | all_of(speed, "forward", "up", "most")
     | all_of(time, "soonest"),
     Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
     Poise: all_of(length, "margin") | all_of(rate, "rate"),

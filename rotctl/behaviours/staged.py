@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.behaviours import possible
+from rotctl.behaviours import possible, take_off
 from rotctl.behaviours.aims import Aim
 from rotctl.behaviours.behaviour import (
     Placement,
@@ -118,7 +118,8 @@ class Staged:
         self._target = math.radians(settings.target_excursion)
         to_left = {"left": 0.0, "up": self._target, "forward": -self._target}
         right = to_left[settings.turn_about] < 0.0
-        self._stages = tuple(mirrored(s, model) if right else s for s in settings.stages)
+        stages = [take_off.at_speed(stage, settings.take_off) for stage in settings.stages]
+        self._stages = tuple(mirrored(s, model) if right else s for s in stages)
         found: dict[str, None] = {}
         for stage in self._stages:
             for name, wanted in (settings.tasks | stage.tasks).items():
@@ -133,7 +134,7 @@ class Staged:
         self._poses = [self._law(stage) for stage in self._stages]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
         for part in self._parts:
-            possible.check(model, self.axes, self._target, part.aims, self._laws)
+            possible.check(model, self.axes, self._target, part.aims, self._laws, settings.take_off)
 
     def _part(self, stage: Stage) -> _Part:
         model = self._model

@@ -10,11 +10,12 @@ from rotctl.behaviours.facing import TurnAbout
 from rotctl.behaviours.flight_settings import TUCK
 from rotctl.behaviours.staged import Staged
 from rotctl.behaviours.stages import Stage, TaskSettings
+from rotctl.behaviours.touching import Launched
 from rotctl.control import ControllerSettings
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings import STRICT, Finite
+from rotctl.settings import STRICT, Finite, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -29,6 +30,7 @@ class StagedSettings:
         turn_about: left, or up, or forward; about the latter two stages are of a turn to the left,
             and mirrored for one to the right.
         shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
+        take_off: upward speed at which it takes off, in place of the launch's own [m/s].
     """
 
     name: str
@@ -40,6 +42,7 @@ class StagedSettings:
     target_excursion: Finite = 0.0
     turn_about: TurnAbout = "left"
     shape: str = TUCK
+    take_off: Positive | None = None
     source: str = ""
     description: str = ""
 
@@ -51,6 +54,8 @@ class StagedSettings:
             raise ValueError("the first stage must have poses: a run starts in them")
         if self.shape != TUCK and not any(stage.flight for stage in self.stages):
             raise ValueError(f"shape={self.shape}: nothing flies here")
+        if self.take_off and not any(isinstance(s.until, Launched) for s in self.stages):
+            raise ValueError(f"take_off={self.take_off:g}: nothing launches here")
         names = [stage.name for stage in self.stages]
         for stage in self.stages:
             if stage.otherwise and stage.otherwise.stage not in names:
