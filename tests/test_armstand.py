@@ -19,7 +19,7 @@ KEY = "behaviour.target_excursion"
 @pytest.fixture(scope="module")
 def forward():
     """A forward dive of one somersault: its criteria and its rows."""
-    config = load(["behaviour=dive_armstand_forward", "seed=2001", "plant=varied", "duration=4.8"])
+    config = load(["behaviour=dive_armstand_forward", "seed=2001", "plant=varied", "duration=5.3"])
     return config.criteria, in_memory(build(config))[0].arrays()
 
 
@@ -46,10 +46,10 @@ def test_it_stands_on_its_hands_at_the_edge(forward):
 
 def test_who_is_not_held_long_enough_is_told_so(forward):
     criteria, log = forward
-    longer = replace(criteria, held=replace(criteria.held, seconds=3.0))
+    longer = replace(criteria, held=replace(criteria.held, seconds=4.0))
     reason = dive.judge(log, longer, 360.0, PERIOD)[1]
-    assert reason.startswith("was held upside down for 2.")
-    assert reason.endswith(" s, is to be for 3")
+    assert reason.startswith("was held upside down for 3.")
+    assert reason.endswith(" s, is to be for 4")
 
 
 def test_hands_that_pushed_off_do_not_count_until_the_body_is_below_the_platform(forward):
@@ -61,7 +61,7 @@ def test_hands_that_pushed_off_do_not_count_until_the_body_is_below_the_platform
 
 @pytest.mark.parametrize(("target", "height"), [(-360, 5), (-720, 10)])
 def test_backward_it_does_so_too(target, height):
-    turns = [f"{KEY}={target}", f"terrain.height={height}", "seed=2001", "duration=4.8"]
+    turns = [f"{KEY}={target}", f"terrain.height={height}", "seed=2001", "duration=5.3"]
     config = load(["behaviour=dive_armstand_backward", *turns])
     log = in_memory(build(config))[0].arrays()
     assert dive.judge(log, config.criteria, float(target), PERIOD)[1] == ""
