@@ -71,7 +71,7 @@ def seconds_of(log):
         # A dive: until it is in the water, where nothing touches it for long.
         (
             log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0)),
-            [(1.5, 2.0), (2.0, 3.2)],
+            [(1.5, 2.0), (2.0, 3.1)],
         ),
         # A hop is no flight.
         (log_of(6.0, stages=(1.0,), flies=(2.0, 2.1), moves=(1.8, 3.0)), [(1.3, 3.5)]),
@@ -89,6 +89,13 @@ def seconds_of(log):
 )
 def test_what_is_shown(log, shown):
     assert seconds_of(log) == shown
+
+
+def test_a_dive_from_the_hands_is_shown_from_when_the_handstand_is_left():
+    log = log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0))
+    upside_down = np.diag([-1.0, 1.0, -1.0])
+    log["trajectory/trunk_axes"] = np.tile(upside_down, (len(log["command/stage"]), 1, 1))
+    assert seconds_of(log) == [(0.5, 2.0), (2.0, 3.1)]
 
 
 def test_an_older_log_tells_no_stages():

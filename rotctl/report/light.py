@@ -55,3 +55,32 @@ def sky(view: View, width: int, height: int) -> NDArray[np.uint8]:
     down = np.clip(np.linspace(0.0, 1.0 / horizon, height), 0.0, 1.0)[:, None, None]
     sky = (1.0 - down) * np.array(SKY_TOP) + down * np.array(SKY_LOW)
     return np.broadcast_to(np.uint8(np.round(255.0 * sky)), (height, width, 3))
+
+
+def clear(model: mujoco.MjModel) -> float:
+    """What share of light goes through the clearest of the world, in at a face and out at another.
+
+    0 where nothing is clear.
+    """
+    opaque = model.geom_rgba[model.geom_bodyid == 0, 3]
+    return float(1.0 - opaque[opaque > 0.0].min(initial=1.0)) ** 2
+
+
+def before_sky(
+    picture: NDArray[np.uint8], far: NDArray[np.bool_], sky: NDArray[np.uint8], clear: float
+) -> NDArray[np.uint8]:
+    """A picture (height, width, 3) drawn on black, with the sky behind it.
+
+    Water is drawn over what is behind it and has no depth of its own: where that is nothing, the
+    sky shines through it.
+
+    Args:
+        far: (height, width) where nothing solid is.
+        clear: share of the sky's light that what is not solid lets through; 0 if nothing is so.
+    """
+    seen = np.where(far[..., None], sky, picture)
+    if clear:
+        veiled = far & picture.any(axis=2)
+        lit = np.round(picture[veiled] + clear * sky[veiled])
+        seen[veiled] = np.minimum(lit, 255.0).astype(np.uint8)
+    return seen

@@ -38,6 +38,7 @@ class Scene:
         self.width, self.height = width, height
         self._data = mujoco.MjData(model)
         self._limbs = character.is_limb(model)
+        self._clear = light.clear(model)
         self._distance = 0.0
         self._falls = False
         self._centre = 0.0  # [m] height of the camera's target above the ground
@@ -115,9 +116,9 @@ class Scene:
         picture = np.empty((self.height, self.width, 3), dtype=np.uint8)
         depth = np.empty((self.height, self.width), dtype=np.float32)
         mujoco.mjr_readPixels(picture, depth, frame, self._drawing)
-        empty = depth[::-1] >= 1.0
+        far = depth[::-1] >= 1.0
         return (
-            np.where(empty[..., None], self._sky, picture[::-1]),
+            light.before_sky(picture[::-1], far, self._sky, self._clear),
             Camera(self._view_in, target, self._distance, self.width, self.height),
         )
 

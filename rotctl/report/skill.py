@@ -18,7 +18,7 @@ from rotctl.rotations import Array
 FLIGHT = 0.2  # [s] from so long on it is one, not a hop
 BEFORE = 0.5  # [s] of the crouch before a take-off, of the rest before anything else
 AFTER = 0.5  # [s] shown when it is still: arms take longer
-WET = 0.2  # [s] shown in the water
+WET = 0.1  # [s] shown in the water: half of the body is in
 LONGEST = 3.0  # [s] after a landing: who is not still then has fallen
 SLOW = 0.1  # [m/s] of the centre of mass, that is still
 SLOW_TURN = 0.3  # [rad/s] of the whole body
@@ -72,10 +72,19 @@ def _flight(log: RunLog, off: int, down: int, period: float, rows: int) -> list[
     wet = entry(log)
     if wet is not None and off < wet <= down and not np.asarray(log["contacts/count"])[wet]:
         last = min(wet + round(WET / period), rows - 1)
-        return [Part(max(off - steps, 0), off, 3.0), Part(off, last, 9.0)]
+        return [_before(log, off, steps), Part(off, last, 9.0)]
     last = min(_still(log, down, period, rows), down + round(LONGEST / period))
     before = Part(max(off - steps, 0), off, 3.0)
     return [before, Part(off, down, 5.0), *([Part(down, last, 4.0)] if last > down else [])]
+
+
+def _before(log: RunLog, off: int, steps: int) -> Part:
+    """The last rows before a take-off; from the hands, all since the handstand was left."""
+    first = max(off - steps, 0)
+    if "trajectory/trunk_axes" in log and floats(log, "trajectory/trunk_axes")[first, 2, 2] < 0.0:
+        held = int(np.argmax(np.asarray(log["command/stage"]) > 0))
+        return Part(max(held - steps, 0), off, 7.0)
+    return Part(first, off, 3.0)
 
 
 def _begin(log: RunLog, staged: Array, period: float) -> int | None:
