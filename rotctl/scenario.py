@@ -32,7 +32,7 @@ from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.schema import Config
 from rotctl.settings import ends
-from rotctl.simulation import falling
+from rotctl.simulation import aloft, falling
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
@@ -126,7 +126,7 @@ def build(config: Config, making: Making = ANEW) -> Scenario:
         senses=senses,
         motors=motors,
         start=starts.draw(
-            asking(config.start, by, falling.UNITS),
+            asking(config.start, by, falling.UNITS | aloft.UNITS),
             known,
             config.behaviour.roll_about,
             np.random.default_rng(config.seed),

@@ -201,6 +201,12 @@ CASES = {
         seconds=4.3,
     ),
     "landing": Case(("behaviour=land",), r"start\.falling\..*", seconds=0.1),
+    "spawned in the air": Case(("behaviour=flight",), r"start\.aloft\..*", seconds=0.02),
+    "arms in the air": Case(
+        ("behaviour=flight", "seed=2015"),
+        r"behaviour\.stages\.1\.flight\.(levelling|midway)\.(?!pose).*",
+        seconds=0.25,
+    ),
 }
 
 

@@ -18,7 +18,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.stature import Likeness, grown, likeness
 from rotctl.run import in_memory, make
 from rotctl.scenario import build, model_of
-from rotctl.simulation import falling
+from rotctl.simulation import aloft, falling
 
 CHILD = ("character.height=1.2", "character.mass=23")
 GIANT = ("character.height=7.0", "character.mass=4480")  # 4 times as tall, 64 times as heavy
@@ -145,7 +145,7 @@ def test_a_cartwheel_is_asked_for_in_its_units():
     assert after[2].until.distance == 4 * before[2].until.distance
 
 
-@pytest.mark.parametrize("known", [falling.UNITS, UNITS])
+@pytest.mark.parametrize("known", [aloft.UNITS, falling.UNITS, UNITS])
 def test_units_are_of_fields_that_there_are(known):
     for shape, units in known.items():
         assert set(units) <= {part.name for part in fields(shape)}, shape

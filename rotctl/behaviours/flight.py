@@ -20,6 +20,7 @@ import numpy as np
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.flight_settings import TUCK, EntrySettings, FlightSettings
 from rotctl.behaviours.landing import Contact, Landing
+from rotctl.behaviours.levelling import Ahead, Levelled, Levelling
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.meant import instead
@@ -50,6 +51,7 @@ class Aloft(NamedTuple):
         held: amount that is wanted until it opens [-].
         first: (nu,) pose at take-off [rad].
         pose: (nu,) that joints are to have now [rad]; speed: (nu,) of that [rad/s].
+        level: what arms do against momentum across the way.
     """
 
     amount: float
@@ -58,6 +60,7 @@ class Aloft(NamedTuple):
     first: Array
     pose: Array
     speed: Array
+    level: Levelled = Levelled()
 
 
 class Flight:
@@ -93,6 +96,10 @@ class Flight:
         self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
         self._tuck = make_pose(model, tightest, f"{key}.{shape}")
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
+        self._midway: tuple[float, Array] | None = None
+        if settings.midway:
+            by_way = make_pose(model, settings.midway.pose, f"{key}.midway.pose")
+            self._midway = settings.midway.amount, by_way
         self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
         if settings.entry:
             self._usual = self._entry(settings.entry, f"{key}.entry")
@@ -102,6 +109,13 @@ class Flight:
         assert landing  # as the settings ask for
         self.bodies = landing.bodies
         self._shapes = Shapes(model)
+        self._levelling: Levelling | None = None
+        level = settings.levelling
+        if level and (not level.shapes or shape in level.shapes):
+            if not self._pitches:
+                raise InputError(f"{key}.levelling: is of turns about left, and this one is not")
+            aside = f"{key}.levelling"
+            self._levelling = Levelling(level, model, self._shapes, settings.change, aside)
         self._slowness = np.array(
             [1.0 / self._shapes.inertia(self.pose(a, self._usual), axis) for a in AMOUNTS.tolist()]
         )
@@ -168,6 +182,11 @@ class Flight:
 
     def pose(self, amount: float, contact: Contact) -> Array:
         """The shape (nu,) of an amount of tuck [rad]."""
+        if self._midway and amount > 0.0:
+            at, pose = self._midway
+            if amount <= at:
+                return np.asarray(contact.pose + (amount / at) * (pose - contact.pose))
+            return np.asarray(pose + ((amount - at) / (1.0 - at)) * (self._tuck - pose))
         end = self._tuck if amount >= 0.0 else self._stretch
         return np.asarray(contact.pose + abs(amount) * (end - contact.pose))
 
@@ -256,7 +275,7 @@ class Flight:
         time = self.time(up, over, contact)
         late = time < 0.5 * settings.change  # too late for another shape to turn much
         turning = self._sense * dot(momentum.angular, scene.turning)
-        need = 0.0 if late else self.left_to_turn(scene, contact, turning)
+        need = 0.0 if late else self.left_to_turn(scene, contact, turning) - before.level.missed
         held = before.held if late else self._amount(need, turning, before.amount, time)
         wanted = held * _smooth(min(time / settings.opening, 1.0))
         amount, rate = self._towards(wanted, before, period)
@@ -268,7 +287,43 @@ class Flight:
             missing = self.left_to_turn(scene, contact, turning) - turns
             pose = self._feet.placed(pose, self._sense * opened * missing)
         pose += (1.0 - _smooth(min(gone, 1.0))) * (before.first - pose)
-        return Aloft(amount, rate, held, before.first, pose, (pose - before.pose) / period)
+        now = Aloft(amount, rate, held, before.first, pose, pose, before.level)
+        if self._levelling:
+            ahead_of_it = self._ahead(scene, contact, now, time, gone)
+            level = self._levelling.advance(before.level, ahead_of_it, period)
+            pose = pose + _smooth(min(gone, 1.0)) * self._levelling.offset(level.amount)
+            now = now._replace(pose=pose, level=level)
+        return now._replace(speed=(pose - before.pose) / period)
+
+    def _ahead(self, scene: Scene, contact: Contact, now: Aloft, time: float, gone: float) -> Ahead:
+        """What is left of the flight as it is planned, [s] and changes gone until now."""
+        settings, state = self._settings, scene.state
+
+        def opened(after: float) -> float:
+            return _smooth(min(max(time - after, 0.0) / settings.opening, 1.0))
+
+        def changed(after: float) -> float:
+            return _smooth(min(after / settings.change, 1.0))
+
+        def pose(after: float) -> Array:
+            amount = now.amount + (now.held * opened(after) - now.amount) * changed(after)
+            shape = self.pose(amount, contact)
+            first = 1.0 - _smooth(min(gone + after / settings.change, 1.0))
+            return np.asarray(shape + first * (now.first - shape))
+
+        return Ahead(
+            time,
+            state.time,
+            tuple(state.position[3:7].tolist()),
+            state.momentum.angular.tolist(),
+            state.position[self._model.angles],
+            pose,
+            opened,
+            changed,
+            scene.axes.tolist(),
+            self._target + contact.attitude,
+            self._sense,
+        )
 
     def _towards(self, wanted: float, now: Aloft, period: float) -> tuple[float, float]:
         """Amount and its rate a period on: there soonest, with a unit's way in `change`."""

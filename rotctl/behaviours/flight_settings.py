@@ -5,6 +5,8 @@ from dataclasses import field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.landing import LandingSettings
+from rotctl.behaviours.levelling import LevellingSettings
+from rotctl.meant import instead
 from rotctl.motion import Turn
 from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
@@ -28,6 +30,22 @@ class EntrySettings:
 
 
 @validated(frozen=True, config=STRICT)
+class MidwaySettings:
+    """A shape on the way from the landing pose to the tightest.
+
+    The straight way there is, for a part of it, a body that spins about its middle axis of inertia,
+    and whatever is off grows.
+
+    Attributes:
+        amount: of the tuck at which it has this shape [-].
+        pose: by joint name [rad].
+    """
+
+    amount: Fraction
+    pose: dict[str, Turn]
+
+
+@validated(frozen=True, config=STRICT)
 class FlightSettings:
     """How a body flies.
 
@@ -42,6 +60,8 @@ class FlightSettings:
         feet: if on its feet, as its motion then asks for.
         first: attitude of the pelvis that the behaviour's target counts from [deg].
         coasting: what landed turns on as if with its last speed for so long [s].
+        levelling: how arms keep it in its plane; without, nothing does.
+        midway: by which its shapes go from the landing pose to the tightest; straight without.
     """
 
     tuck: dict[str, Turn]
@@ -55,10 +75,17 @@ class FlightSettings:
     feet: LandingSettings | None = None
     first: Finite = 0.0
     coasting: NonNegative = 0.0
+    levelling: LevellingSettings | None = None
+    midway: MidwaySettings | None = None
 
     def __post_init__(self) -> None:
         if (self.entry is None) == (self.feet is None):
             raise ValueError("give either entry or feet, not both and not neither")
+        for shape in self.levelling.shapes if self.levelling else ():
+            if shape not in (known := (TUCK, *self.shapes)):
+                raise ValueError(f"levelling: no shape {shape!r}; {instead(shape, known)}")
+        if self.midway and not 0.0 < self.midway.amount < 1.0:
+            raise ValueError(f"midway: its amount {self.midway.amount:g} is not between 0 and 1")
 
     def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
         """Of a shape, by joint name [rad]; None if there is no such shape."""

@@ -14,6 +14,7 @@ from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight_settings import FlightSettings
 from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
+from rotctl.behaviours.levelling import LevellingSettings
 from rotctl.behaviours.pacing import PaceSettings
 from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
@@ -95,6 +96,7 @@ UNITS: Units = {
     Opposite: all_of(length, "ahead", "height"),
     Low: all_of(length, "height"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
+    LevellingSettings: all_of(time, "interval"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
     PaceSettings: all_of(length, "travel", "ahead")
     | all_of(rate, "own", "settling")

@@ -145,6 +145,9 @@ def mirrored(stage: Stage, model: Model) -> Stage:
         tuck, stretch = (mirrored_angles(model, a) for a in (flight.tuck, flight.stretch))
         shapes = {name: mirrored_angles(model, a) for name, a in flight.shapes.items()}
         flight = replace(flight, tuck=tuck, stretch=stretch, shapes=shapes)
+        if flight.midway:
+            pose = mirrored_angles(model, flight.midway.pose)
+            flight = replace(flight, midway=replace(flight.midway, pose=pose))
         if flight.entry:
             pose = mirrored_angles(model, flight.entry.pose)
             flight = replace(flight, entry=replace(flight.entry, pose=pose))

@@ -80,7 +80,7 @@ def judge(
         (abs(turned - target) < NEAREST, f"turned {turned:.0f} deg of {target:g}"),
         (m.entry_angle < c.angle, f"enters {m.entry_angle:.1f} deg off the vertical"),
         (m.bent_most < c.bent, f"enters with a joint bent by {m.bent_most:.0f} deg"),
-        (m.clearance > c.clearance, f"came within {m.clearance:.2f} m of the platform"),
+        (not m.clearance <= c.clearance, f"came within {m.clearance:.2f} m of the platform"),
     )
     reason = next((reason for kept, reason in rules if not kept), "")
     found = {"revolved": turned, **asdict(m), **peaks.measure(log, row or 0)}
@@ -111,9 +111,9 @@ def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -
 def entry(log: Arrays) -> int | None:
     """The row in which the last stage begins, which it does as the hands enter; None if never."""
     stage = np.asarray(log["command/stage"])
-    flown, _ = longest_flight(log)
+    flown, landed = longest_flight(log)
     later = np.flatnonzero(np.diff(stage) > 0) + 1
-    if not len(later) or not flown:
+    if not len(later) or not landed:
         return None
     time = floats(log, "trajectory/time")
     return int(later[-1]) if time[later[-1]] - time[flown] > HOP else None  # not the flight itself
@@ -146,9 +146,12 @@ def _clearance(log: Arrays, row: int, sense: float, hands: bool = False) -> floa
 
     Who turns backward (`sense` -1) goes backward.
     Counted from the highest point of the flight on: before it the feet are still at the edge. Or,
-    from the `hands`, from where the centre of mass is below the platform: they leave it last.
+    from the `hands`, from where the centre of mass is below the platform: they leave it last. Who
+    was spawned in the air stood nowhere: NaN, and nothing is asked of it.
     """
     first, _ = longest_flight(log)
+    if not first:
+        return math.nan
     heights = floats(log, "trajectory/com")[first:row, 2]
     top = first + int(np.argmax(heights < PLATFORM if hands else heights))
     ahead, up = sense * frame(log)[0], frame(log)[2]

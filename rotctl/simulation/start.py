@@ -16,7 +16,9 @@ from rotctl.mechanics.hulls import hulls, places
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, advance, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Range
+from rotctl.simulation import aloft as spawned
 from rotctl.simulation import falling as falls
+from rotctl.simulation.aloft import AloftSettings
 from rotctl.simulation.falling import FallingSettings
 
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
@@ -47,7 +49,8 @@ class StartSettings:
             theirs. Without any a run starts in its behaviour's own pose.
         scatter: how far each joint may be from its posture, either way [rad].
         tilt: how far the whole body may be turned about any axis [rad].
-        falling: in the air, instead of on the ground.
+        falling: in the air, instead of on the ground; or
+        aloft: high in it.
     """
 
     name: str
@@ -61,12 +64,14 @@ class StartSettings:
     scatter: NonNegative = 0.0
     tilt: NonNegative = 0.0
     falling: FallingSettings | None = None
+    aloft: AloftSettings | None = None
     description: str = ""
 
     def __post_init__(self) -> None:
-        if self.falling and self.postures:
-            raise ValueError("falling has its own pose, and there are postures")
-        if (self.scatter or self.tilt) and not (self.postures or self.falling):
+        own = [name for name in ("falling", "aloft", "postures") if getattr(self, name)]
+        if len(own) > 1:
+            raise ValueError(f"{own[0]} has its own pose, and there is {own[1]}")
+        if (self.scatter or self.tilt) and not own:
             raise ValueError("scatter and tilt are about postures, and there are none")
 
 
@@ -81,6 +86,8 @@ class Start:
         pose: (nu,) [rad]; None leaves it to the behaviour.
         tilt: (3,) rotation vector of the whole body [rad].
         gap: between its lowest point and the ground [m].
+        height: of the centre of mass over what is below it, instead of a gap [m].
+        ahead: of the origin [m].
     """
 
     pitch: float
@@ -89,6 +96,8 @@ class Start:
     pose: Array | None = None
     tilt: Array = field(default_factory=lambda: np.zeros(3))
     gap: float = 0.0
+    height: float = 0.0
+    ahead: float = 0.0
 
 
 def draw(
@@ -117,7 +126,9 @@ def draw(
                 f"start={settings.name} falls onto the feet of who turns about the left axis, and "
                 f"behaviour.roll_about={roll_about}"
             )
-        return _aloft(settings, settings.falling, model, start, generator)
+        return _falling(settings, settings.falling, model, start, generator)
+    if settings.aloft:
+        return _aloft(settings, settings.aloft, model, start, generator)
     if not settings.postures:
         return start
     if roll_about not in settings.postures:
@@ -131,7 +142,7 @@ def draw(
     return _scattered(settings, model, placed, pose, generator)
 
 
-def _aloft(
+def _falling(
     settings: StartSettings,
     falling: FallingSettings,
     model: Model,
@@ -148,6 +159,26 @@ def _aloft(
         gap=found.gap,
     )
     return _scattered(settings, model, falls_so, found.contact.pose, generator)
+
+
+def _aloft(
+    settings: StartSettings,
+    aloft: AloftSettings,
+    model: Model,
+    start: Start,
+    generator: np.random.Generator,
+) -> Start:
+    x, y, _ = start.velocity.tolist()
+    pose = _pose(model, aloft.pose, "start.aloft.pose")
+    found = spawned.draw(aloft, model, start.pitch, pose, generator)
+    flies = replace(
+        start,
+        velocity=np.array([x, y, found.speed]),
+        angular_velocity=start.angular_velocity + found.angular_velocity,
+        height=aloft.height,
+        ahead=aloft.ahead,
+    )
+    return _scattered(settings, model, flies, pose, generator)
 
 
 def _scattered(
@@ -186,7 +217,13 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
     data.qpos[3:7] = advance(usual.orientation, product(start.tilt, axes))
     mujoco.mj_kinematics(mj, data)
-    data.qpos[2] += (start.gap or -SINK) - _clearance(model, data)
+    if start.height:
+        mujoco.mj_comPos(mj, data)
+        place = start.ahead * axes[0]
+        place[2] = model.ground.height(*place[:2].tolist()) + start.height
+        data.qpos[:3] += place - data.subtree_com[ROOT_BODY]
+    else:
+        data.qpos[2] += (start.gap or -SINK) - _clearance(model, data)
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[ROOT_BODY] - data.subtree_com[ROOT_BODY]
