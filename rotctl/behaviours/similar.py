@@ -74,7 +74,9 @@ UNITS: Units = {
     Capture: all_of(length, "margin", "height", "sink", "lunge_margin", "lunge_most")
     | all_of(speed, "rise"),
     Lunge: all_of(length, "fade"),
-    Stepping: all_of(length, "margin", "lift", "height", "over", "reach", "width", "aside")
+    Stepping: all_of(
+        length, "margin", "lift", "height", "over", "reach", "width", "aside", "narrow"
+    )
     | all_of(time, "time")
     | all_of(speed, "fall"),
     Lean: all_of(length, "margin", "height", "ahead")
