@@ -127,22 +127,7 @@ def make(config: Config) -> EncodedRun:
     Raises:
         InputError: the config does not make a run.
     """
-    return simulated(config, lambda summary: True)
-
-
-def simulated(
-    config: Config, keeps: Callable[[Summary], bool], making: Making = ANEW
-) -> EncodedRun:
-    """Simulate a config and write nothing.
-
-    Args:
-        keeps: whether the log of a run with that summary row is wanted.
-        making: as for `rotctl.scenario.build`.
-
-    Raises:
-        InputError: the config does not make a run.
-    """
-    return _simulated(built(config, making), keeps=keeps)
+    return _simulated(built(config))
 
 
 def built(config: Config, making: Making = ANEW) -> Scenario:
@@ -156,14 +141,11 @@ def built(config: Config, making: Making = ANEW) -> Scenario:
 
 
 def _simulated(
-    scenario: Scenario,
-    progress: Callable[[], object] = lambda: None,
-    keeps: Callable[[Summary], bool] = lambda summary: True,
-    look: Look = nobody,
+    scenario: Scenario, progress: Callable[[], object] = lambda: None, look: Look = nobody
 ) -> EncodedRun:
     begin = time.perf_counter()
     buffer, ending = in_memory(scenario, progress, look=look)
-    return encoded(scenario, buffer, ending, time.perf_counter() - begin, keeps)
+    return encoded(scenario, buffer, ending, time.perf_counter() - begin)
 
 
 def in_memory(

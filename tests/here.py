@@ -15,7 +15,7 @@ class Here:
         asked: how many tasks it was given.
     """
 
-    where, workers = "this process", 1
+    where, workers, together = "this process", 1, 1
 
     def __init__(self, fails=None):
         self.fails = fails or {}

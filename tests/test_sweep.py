@@ -286,7 +286,7 @@ def test_a_manifest_of_somebody_else_is_refused(cli, tmp_path):
 def test_a_worker_that_has_simulated_other_runs_gives_the_same_bits(grid):
     """Its controller and its behaviour serve one run after the other."""
     first, second = runs_of("seed=2000,2001", *grid)
-    here = [carry_out(ordered(run.config, "never")) for run in (first, second, first)]
+    here = carry_out([ordered(run.config, "never") for run in (first, second, first)])
     assert [made.trajectory for made in here] == [
         make(run.config).trajectory for run in (first, second, first)
     ]

@@ -148,6 +148,11 @@ class DaskEngine:
         """How many tasks run at once: one in a process, whatever its threads."""
         return len(self._client.nthreads())
 
+    @property
+    def together(self) -> int:
+        """How many short runs are best carried out in one task: it puts items together itself."""
+        return 1
+
     def map(
         self, task: Callable[[T], R], items: Sequence[T], retries: int
     ) -> Generator[tuple[int, R | Failure], None, None]:

@@ -34,6 +34,11 @@ class Engine(Protocol):
         """How many tasks run at once, as far as is known now; 0 if no worker has come yet."""
         ...
 
+    @property
+    def together(self) -> int:
+        """How many short runs are best carried out in one task."""
+        ...
+
     def map(
         self, task: Callable[[T], R], items: Sequence[T], retries: int
     ) -> Generator[tuple[int, R | Failure], None, None]:

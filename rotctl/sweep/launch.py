@@ -19,9 +19,10 @@ from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry
 from rotctl.run_folder import EncodedRun, publish
 from rotctl.summary import Summary, broke_down
+from rotctl.sweep import groups
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned
-from rotctl.sweep.task import carry_out, ordered
+from rotctl.sweep.task import ordered
 from rotctl.written import to_dict
 
 
@@ -95,7 +96,8 @@ def launch(
     try:
         for row in plan.unlisted:
             rows.add(row)
-        with closing(engine.map(carry_out, orders, retries)) as results:
+        durations = [run.config.duration for run in plan.left]
+        with closing(groups.results(engine, orders, durations, retries)) as results:
             for index, result in results:
                 run = plan.left[index]
                 if isinstance(result, Failure):

@@ -26,6 +26,7 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 MOST_JOBS = 1024
+TOGETHER = 8  # more gain nothing
 PATIENCE = 5.0  # [s] for a process that was told to end
 BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -102,6 +103,11 @@ class LocalEngine:
     def workers(self) -> int:
         """How many tasks run at once."""
         return self._jobs
+
+    @property
+    def together(self) -> int:
+        """How many short runs are best carried out in one task."""
+        return TOGETHER
 
     def map(
         self, task: Callable[[T], R], items: Sequence[T], retries: int

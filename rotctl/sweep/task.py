@@ -1,21 +1,26 @@
-"""One run as a task for a worker.
+"""Runs as a task for a worker.
 
 The runs of a sweep differ in few parts of their configs. So the parts travel as bytes, and equal
 bytes become one object again in a worker: what it has made of a part, it need not make twice.
 """
 
 import pickle
+import time
+from collections.abc import Sequence
 from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from rotctl.control import Controller
-from rotctl.run import simulated
+from rotctl.encoding import encoded
+from rotctl.log import TrajectoryBuffer
+from rotctl.run import built, in_memory
 from rotctl.run_folder import EncodedRun
 from rotctl.same import kept
-from rotctl.scenario import Making, behaviour_of
+from rotctl.scenario import Making, Scenario, behaviour_of
 from rotctl.schema import Config
 from rotctl.sweep import keep
+from rotctl.sweep.engines import Failure, carried_out
 
 NAMES = tuple(part.name for part in fields(Config))
 
@@ -37,15 +42,34 @@ def ordered(config: Config, wish: str) -> Order:
     return Order(tuple(_packed(getattr(config, name)) for name in NAMES), wish)
 
 
-def carry_out(order: Order) -> EncodedRun:
-    """Simulate a run and write nothing: a worker need not see the driver's disk.
+def carry_out(orders: Sequence[Order]) -> list[EncodedRun | Failure]:
+    """Simulate runs and write nothing: a worker need not see the driver's disk.
 
-    Raises:
-        InputError: the config does not make a run.
+    First all are made, then all simulated, then all judged; see `rotctl.sweep.groups`.
     """
+    runs: list[Any] = list(orders)
+    for step in (_made, _simulated, _judged):
+        runs = [run if isinstance(run, Failure) else carried_out(step, run) for run in runs]
+    return runs
+
+
+def _made(order: Order) -> tuple[Scenario, str]:
     parts: dict[str, Any] = dict(zip(NAMES, map(_unpacked, order.parts), strict=True))
-    config = Config(**parts)
-    return simulated(config, lambda summary: keep.kept(order.wish, summary["success"]), _SHARED)
+    return built(Config(**parts), _SHARED), order.wish
+
+
+def _simulated(made: tuple[Scenario, str]) -> tuple[Scenario, TrajectoryBuffer, str, float, str]:
+    scenario, wish = made
+    begin = time.perf_counter()
+    buffer, ending = in_memory(scenario)
+    return scenario, buffer, ending, time.perf_counter() - begin, wish
+
+
+def _judged(simulated: tuple[Scenario, TrajectoryBuffer, str, float, str]) -> EncodedRun:
+    scenario, buffer, ending, wall, wish = simulated
+    return encoded(
+        scenario, buffer, ending, wall, lambda summary: keep.kept(wish, summary["success"])
+    )
 
 
 @kept(most=1000)
