@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import mujoco
 import numpy as np
 
 from rotctl.behaviours import BehaviourSettings
@@ -50,6 +51,7 @@ class Scenario:
         model: what is simulated.
         known: what control and behaviour know of it; mostly the same.
         observer: reads what is simulated; the controller itself, where it sees just that.
+        data: makes MuJoCo's memory of a model, which a run resets.
         run_id: 12 hex digits; the same for the same config, log schema and model.
     """
 
@@ -64,6 +66,7 @@ class Scenario:
     motors: Motors
     disturbance: Disturbance
     start: Start
+    data: Callable[[mujoco.MjModel], mujoco.MjData]
     run_id: str
 
 
@@ -90,6 +93,7 @@ class Making(NamedTuple):
 
     controller: Callable[[Model, ControllerSettings], Controller] = Controller
     behaviour: Callable[..., Behaviour[Any]] = behaviour_of
+    data: Callable[[mujoco.MjModel], mujoco.MjData] = mujoco.MjData
 
 
 ANEW = Making()
@@ -131,6 +135,7 @@ def build(config: Config, making: Making = ANEW) -> Scenario:
             config.behaviour.roll_about,
             np.random.default_rng(config.seed),
         ),
+        data=making.data,
         run_id=run_id(config, known),
     )
 

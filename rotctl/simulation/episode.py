@@ -75,6 +75,11 @@ class Parts(Protocol):
         """How it starts."""
         ...
 
+    @property
+    def data(self) -> Callable[[mujoco.MjModel], mujoco.MjData]:
+        """Makes MuJoCo's memory of a model, or gives that of an earlier run, to be reset."""
+        ...
+
 
 class Moment(NamedTuple):
     """One control step.
@@ -126,7 +131,7 @@ class Episode:
         self._parts, self._mark = parts, mark
         self.memory: Any = None
         self.blend, self.phase = INITIAL_BLEND, nan
-        self.data = mujoco.MjData(parts.model.mj)
+        self.data = parts.data(parts.model.mj)
         usual = parts.behaviour.start(parts.start.pitch)
         place(parts.model, self.data, parts.start, usual, parts.behaviour.axes)
 

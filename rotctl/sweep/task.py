@@ -11,6 +11,8 @@ from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import mujoco
+
 from rotctl.control import Controller
 from rotctl.encoding import encoded
 from rotctl.log import TrajectoryBuffer
@@ -77,5 +79,7 @@ def _packed(part: Any) -> bytes:
     return pickle.dumps(part, pickle.HIGHEST_PROTOCOL)
 
 
-_SHARED = Making(kept(most=8)(Controller), kept(most=8)(behaviour_of))  # one run at a time
+_SHARED = Making(  # one run at a time
+    kept(most=8)(Controller), kept(most=8)(behaviour_of), kept(most=8)(mujoco.MjData)
+)
 _unpacked = lru_cache(maxsize=1000)(pickle.loads)
