@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 from uuid import uuid4
 
 from rotctl.errors import InputError, RotctlError
-from rotctl.sweep.engines import Failure, carried_out
+from rotctl.sweep.engines import TOGETHER, Failure, carried_out
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -28,8 +28,8 @@ TASK = 1.0  # [s] of work in a task
 MOST_TOGETHER = 128  # items of a task
 FIRST = 32  # tasks of one item each, before anything is known
 SHARES = 32  # of what is left, a task has at most one
-# Items at the scheduler at once. Results wait in the workers' memory until they are fetched,
-# at about 1 MB a run: this bounds them, and keeps a hundred workers busy.
+# Items at the scheduler at once. Results wait in the workers' memory until they are fetched, at
+# about 2 MB an item: this bounds them, and keeps a hundred workers busy.
 IN_FLIGHT = 512
 TLS = "distributed.comm.tls, see docs/sweeps.md"
 NOT_INSTALLED = "--scheduler needs Dask, which is not installed: pip install 'rotctl[cluster]'"
@@ -150,8 +150,8 @@ class DaskEngine:
 
     @property
     def together(self) -> int:
-        """How many short runs are best carried out in one task: it puts items together itself."""
-        return 1
+        """How many short runs are best carried out in one task."""
+        return TOGETHER
 
     def map(
         self, task: Callable[[T], R], items: Sequence[T], retries: int

@@ -9,6 +9,8 @@ from rotctl.errors import RotctlError
 T = TypeVar("T")
 R = TypeVar("R")
 
+TOGETHER = 8  # short runs in a task: more gain nothing
+
 
 @dataclass(frozen=True)
 class Failure:

@@ -20,13 +20,12 @@ from typing import Any, TypeVar
 
 from rotctl.errors import InputError
 from rotctl.headless import mujoco_without_opengl
-from rotctl.sweep.engines import Failure, carried_out
+from rotctl.sweep.engines import TOGETHER, Failure, carried_out
 
 T = TypeVar("T")
 R = TypeVar("R")
 
 MOST_JOBS = 1024
-TOGETHER = 8  # more gain nothing
 PATIENCE = 5.0  # [s] for a process that was told to end
 BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
