@@ -87,8 +87,8 @@ def behaviour_of(
 class Making(NamedTuple):
     """How the parts of a run are made that depend on nothing that is drawn.
 
-    Where a run is over before the next one begins they may be those of an earlier run of the same
-    settings: a flip is made in 12 ms, as long as a quarter of a second of it is simulated.
+    To make a flip takes as long as to simulate a quarter of a second of it, and MuJoCo's memory,
+    page by page, as long as a tenth of a roll's second: see `shared`.
     """
 
     controller: Callable[[Model, ControllerSettings], Controller] = Controller
@@ -97,6 +97,12 @@ class Making(NamedTuple):
 
 
 ANEW = Making()
+
+
+def shared() -> Making:
+    """For runs each of which is over before the next one begins: the same parts serve them all."""
+    keep = kept(most=8)
+    return Making(keep(Controller), keep(behaviour_of), keep(mujoco.MjData))
 
 
 def build(config: Config, making: Making = ANEW) -> Scenario:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rotctl.config import load
-from rotctl.scenario import build
+from rotctl.scenario import build, shared
 from rotctl.simulation.loop import simulate
 
 RUNS = 1000  # of short sweeps; of long ones an eighth
@@ -59,10 +59,10 @@ def measure(runs: int, duration: float, jobs: int) -> Overhead:
 
 
 def _simulation(runs: int, duration: float) -> float:
-    """CPU time of one simulation loop [s], the mean of a few seeds."""
-    total, seeds = 0.0, range(min(runs, SAMPLE))
+    """CPU time of one simulation loop in a worker [s], the mean of a few seeds."""
+    total, seeds, making = 0.0, range(min(runs, SAMPLE)), shared()
     for seed in seeds:
-        scenario = build(load([f"duration={duration:g}", f"seed={seed}"]))
+        scenario = build(load([f"duration={duration:g}", f"seed={seed}"]), making)
         begin = time.process_time()
         simulate(scenario, duration, scenario.config.physics.contact_capacity)
         total += time.process_time() - begin

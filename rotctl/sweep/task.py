@@ -11,15 +11,12 @@ from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-import mujoco
-
-from rotctl.control import Controller
 from rotctl.encoding import encoded
 from rotctl.log import TrajectoryBuffer
 from rotctl.run import built, in_memory
 from rotctl.run_folder import EncodedRun
 from rotctl.same import kept
-from rotctl.scenario import Making, Scenario, behaviour_of
+from rotctl.scenario import Scenario, shared
 from rotctl.schema import Config
 from rotctl.sweep import keep
 from rotctl.sweep.engines import Failure, carried_out
@@ -79,7 +76,5 @@ def _packed(part: Any) -> bytes:
     return pickle.dumps(part, pickle.HIGHEST_PROTOCOL)
 
 
-_SHARED = Making(  # one run at a time
-    kept(most=8)(Controller), kept(most=8)(behaviour_of), kept(most=8)(mujoco.MjData)
-)
+_SHARED = shared()
 _unpacked = lru_cache(maxsize=1000)(pickle.loads)
