@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.metrics.quantile import percentile
+from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.rolling import (
     IN_FILES_ONLY,
     OF_REVOLUTIONS,
@@ -563,3 +563,11 @@ def test_percentiles_are_those_of_numpy(shape, q):
     assert percentile(values, q) == np.percentile(values, q)
     values.flat[-1] = np.nan
     assert np.isnan(percentile(values, q))
+
+
+@pytest.mark.parametrize("shape", [(1,), (2,), (7,), (60,), (101,), (60, 29)])
+def test_medians_are_those_of_numpy(shape):
+    values = np.random.default_rng(5).normal(size=shape)
+    assert median(values) == np.median(values)
+    values.flat[-1] = np.nan
+    assert np.isnan(median(values))

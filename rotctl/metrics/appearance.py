@@ -10,7 +10,7 @@ from rotctl.metrics import across
 from rotctl.metrics.across import BEARING, HEAD, SIDES, at_hands
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.loads import loads
-from rotctl.metrics.quantile import percentile
+from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
 from rotctl.rotations import Array
 from rotctl.same import kept
@@ -121,7 +121,7 @@ def _over_the_head(
     at = at_hands(mj, skeleton, all_of_them)
     hands = all_of_them.on(at[0], all_of_them.up) + all_of_them.on(at[1], all_of_them.up)
     left = (axes[:, :, 1] * floats(log, "trajectory/trunk_axis")).sum(axis=1)
-    forward = direction * float(np.median(left)) > 0.0
+    forward = direction * median(left) > 0.0
     arms = []
     for rows in found:
         down = height[rows] < NEAR
@@ -214,6 +214,5 @@ def _bend(log: Arrays, joint: str, rows: list[int]) -> float:
     if any(joint + side not in names for side in SIDES):
         return math.nan
     columns = [7 + names.index(joint + side) for side in SIDES]  # after the root's
-    return float(
-        np.degrees(np.median(floats(log, "trajectory/qpos")[rows][:, columns].mean(axis=1)))
-    )
+    bend = floats(log, "trajectory/qpos")[rows][:, columns].mean(axis=1)
+    return float(np.degrees(median(bend)))

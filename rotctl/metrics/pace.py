@@ -6,6 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rotctl.metrics.columns import Arrays, Column, in_frame
+from rotctl.metrics.quantile import median
 from rotctl.metrics.turning import revolutions
 
 COLUMNS = (
@@ -40,7 +41,7 @@ def measure(
     return {
         "rate_error": off(rate, wanted),
         "speed_error": off(speed, commanded.get("speed_commanded", math.nan)),
-        "revolution_error": float(np.median(each)),
+        "revolution_error": median(each),
         "travel_mean": abs(speed / rate) if rate else math.nan,
     }
 

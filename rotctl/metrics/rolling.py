@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
 from rotctl.metrics.halts import Halts, going, unkept
-from rotctl.metrics.quantile import percentile
+from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.smoothness import jerk, recovery, use_of_contacts
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
 from rotctl.settings import STRICT, Finite, NonNegative, Positive, Range
@@ -292,5 +292,5 @@ def _median_angle(degrees: NDArray[np.float64]) -> float:
     """Median about the mean direction, in (-180, 180]: +179 and -179 do not make 0."""
     turn = np.radians(degrees)
     centre = math.degrees(math.atan2(np.sin(turn).sum(), np.cos(turn).sum()))
-    median = centre + np.median((degrees - centre + 180.0) % 360.0 - 180.0)
-    return float(180.0 - (180.0 - median) % 360.0)
+    middle = centre + median((degrees - centre + 180.0) % 360.0 - 180.0)
+    return float(180.0 - (180.0 - middle) % 360.0)
