@@ -85,6 +85,25 @@ def test_the_plan_ends_where_mechanics_end(law, moves):
     assert off < 0.05  # [rad] of some 3 that it turns
 
 
+def test_a_fall_from_anywhere_is_looked_at_in_so_many_parts(law, monkeypatch):
+    asked, shapes = [], law._levelling._shapes
+    spin = shapes.spin
+    monkeypatch.setattr(shapes, "spin", lambda *pose: asked.append(1) or spin(*pose))
+    pose = make_pose(law._model, TUCK, "tuck")
+    axes, still = np.eye(3).tolist(), (1.0, 0.0, 0.0, 0.0)
+
+    def share(after):
+        return 1.0
+
+    for time, parts in ((0.01, 6), (1.0, 20), (1e6, 100)):
+        asked.clear()
+        ahead = Ahead(
+            time, 0.0, still, [0.0, 1.0, 0.0], pose, lambda _: pose, share, share, axes, 0.0, 1.0
+        )
+        law._levelling._landed(0.0, 0.0, ahead)
+        assert len(asked) == parts
+
+
 def test_a_flight_without_momentum_across_needs_no_arms():
     scenario = flier(1.5, HEAD_FIRST | {"levelling": LEVEL})
     episode, law = Episode(scenario), scenario.behaviour._laws["flight"]

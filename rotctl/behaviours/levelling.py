@@ -29,7 +29,7 @@ from rotctl.rotations import Array, Triple, advanced, crossed, dotted, rotated
 from rotctl.settings import STRICT, NonNegative, Positive
 
 STEP = 0.05  # [s] of the plan, in which the body turns by up to 60 degrees
-PARTS = 6  # of the plan, at least
+LEAST_PARTS, MOST_PARTS = 6, 100  # of the plan: one from the stratosphere takes no longer
 WAYS = (0.3, 0.1, 0.03)  # of the amount, by which it is changed in turn to see what comes of it
 CATCHING_UP = 0.08  # [s] in which joints come to where they should be
 LATEST = 0.05  # [s] before the landing nothing helps any more
@@ -168,7 +168,7 @@ class Levelling:
 
     def _landed(self, amount: float, wanted: float, ahead: Ahead) -> tuple[float, ...]:
         """Attitude of the pelvis at the landing, by Euler's equations over the planned shapes."""
-        parts = max(PARTS, ceil(ahead.time / STEP))
+        parts = min(max(LEAST_PARTS, ceil(ahead.time / STEP)), MOST_PARTS)
         step = ahead.time / parts
 
         def planned(time: float) -> Array:
