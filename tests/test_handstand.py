@@ -184,3 +184,24 @@ def test_only_hands_and_straight_up_count_as_held():
         "trajectory/trunk_axes": up[:, None, None] * np.ones((1, 3, 3)),
     }
     assert longest_held(log, HELD, PERIOD) == pytest.approx(200 * PERIOD)
+
+
+def test_who_kicks_up_takes_off_one_leg_after_the_other_and_joins_them_over_the_hands():
+    """From one start: hands, the free leg up, a push that turns the body, and balance on top."""
+    config = load(["behaviour=kick_up", "seed=2001", "plant=varied", "duration=7.5"])
+    scenario = build(config)
+    buffer, ending = in_memory(scenario)
+    assert not ending
+    log, model = buffer.arrays(), scenario.model
+    angles = np.asarray(log["trajectory/qpos"])[:, model.angles]
+    left, right = angles[:, model.motors("hip_y", "here")].T
+    bodies = np.asarray(log["contacts/body"])
+    on = {name: (bodies == model.mj.body(name).id).any(axis=1) for name in ("foot_l", "foot_r")}
+    off = {name: int(np.flatnonzero(touches)[-1]) for name, touches in on.items()}
+    assert off["foot_l"] - off["foot_r"] > 0.5 / PERIOD
+    released = off["foot_l"]
+    assert left[released] - right[released] > 1.5  # [rad] legs apart
+    turning = np.asarray(log["trajectory/angular_momentum"])[released - 24 : released, 1]
+    assert turning.max() > 8.0  # [kg m2/s] the push turns the body
+    assert longest_held(log, HELD, PERIOD) > 1.0
+    assert np.abs(left[-1] - right[-1]) < 0.2
