@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rotctl import choosing, documents, own_body
+from rotctl import chained, choosing, documents, own_body
 from rotctl.choosing import Assignment, simple
 from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, folders, is_own, named_file, own_dir, require_plain
@@ -88,8 +88,9 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     """
     body = own_body.named(overrides)
     if body is None:
-        return _composed(overrides)
-    return {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
+        return chained.composed(_composed(overrides), _composed)
+    data = {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
+    return chained.composed(data, _composed)
 
 
 def _composed(overrides: list[str]) -> dict[str, Any]:

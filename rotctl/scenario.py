@@ -13,6 +13,7 @@ import numpy as np
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
+from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import similar as asking
 from rotctl.control import Controller, ControllerSettings
@@ -29,6 +30,7 @@ from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
+from rotctl.metrics.judge import ChainCriteria, Criteria
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.schema import Config
@@ -112,7 +114,7 @@ def build(config: Config, making: Making = ANEW) -> Scenario:
         InputError: parts that do not fit together, with one clear line.
     """
     by = gains_likeness(config.character)
-    control = similar(config.controller, by, _kinds_of(config))
+    control = similar(config.controller, by, config.behaviour.kinds)
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     apart = config.plant.differs or config.disturbance.changes_model
     model = _varied(config, Variation(config.plant, plant)) if apart else known
@@ -152,40 +154,14 @@ def _outside(model: Model, disturbance: Disturbance) -> Disturbance:
     return Water(model.mj, pool, disturbance) if isinstance(pool, Basin) else disturbance
 
 
-def _kinds_of(config: Config) -> dict[str, str]:
-    """Kinds of the behaviour's tasks by the names of their gains; of a roll they are the names."""
-    behaviour = config.behaviour
-    staged = behaviour.finish if isinstance(behaviour, RollingSettings) else behaviour
-    if staged is None:
-        return {}
-    tasks = [staged.tasks, *(stage.tasks for stage in staged.stages)]
-    return {task.gains or name: task.kind for some in tasks for name, task in some.items()}
-
-
 def require_fit(config: Config, model: Model) -> None:
     """See that the parts of a config fit together.
 
     Raises:
         InputError: criteria judge other motions or bodies, or what disturbs comes too late.
     """
-    behaviour, judged = config.behaviour, config.criteria.kind
-    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
-    if isinstance(behaviour, RollingSettings):
-        wanted = ["rolling"] if behaviour.finish is None else ["finish"]
-    if judged not in wanted:
-        *first, last = wanted
-        choices = f"{', '.join(first)} or {last}" if first else last
-        raise InputError(
-            f"criteria={config.criteria.name} does not judge behaviour={behaviour.name}, "
-            f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
-            f"choose criteria={choices}"
-        )
-    stands = getattr(config.criteria, "landing", getattr(config.criteria, "stand", config.criteria))
-    for name in getattr(stands, "feet", ()):
-        body_id(model.mj, name, "criteria.feet")
-    for group in getattr(config.criteria, "order", ()):
-        for name in group:
-            body_id(model.mj, name, "criteria.order")
+    behaviour = config.behaviour
+    _require_judged(behaviour, config.criteria, model)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
         raise InputError(
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
@@ -211,6 +187,38 @@ def require_fit(config: Config, model: Model) -> None:
             f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
             "none: control goes on with the model that it knows"
         )
+
+
+def _require_judged(
+    behaviour: BehaviourSettings, criteria: Criteria, model: Model, key: str = "criteria"
+) -> None:
+    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
+    if isinstance(behaviour, ChainSettings):
+        wanted = ["chain"]
+    if isinstance(behaviour, RollingSettings):
+        wanted = ["rolling"] if behaviour.finish is None else ["finish"]
+    if criteria.kind not in wanted:
+        *first, last = wanted
+        choices = f"{', '.join(first)} or {last}" if first else last
+        raise InputError(
+            f"{key}={criteria.name} does not judge behaviour={behaviour.name}, "
+            f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
+            f"choose {key}={choices}"
+        )
+    if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
+        links, rules = len(behaviour.parts), len(criteria.parts)
+        if links != rules:
+            raise InputError(
+                f"criteria.parts: {rules} of them, and behaviour={behaviour.name} has {links} parts"
+            )
+        for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
+            _require_judged(part.behaviour, own, model, f"{key}.parts[{number}]")
+    stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))
+    for name in getattr(stands, "feet", ()):
+        body_id(model.mj, name, f"{key}.feet")
+    for group in getattr(criteria, "order", ()):
+        for name in group:
+            body_id(model.mj, name, f"{key}.order")
 
 
 def _stepper(physics: Physics, model: Model) -> Stepper:
@@ -266,6 +274,9 @@ def run_id(config: Config, model: Model) -> str:
     reference = getattr(config.behaviour, "reference", None)
     if reference:
         parts["clip"] = _hash_of_clip(reference)  # a name or path says not what is in it
+    if isinstance(config.behaviour, ChainSettings):
+        said = [getattr(one.behaviour, "reference", None) for one in config.behaviour.parts]
+        parts["clips"] = [_hash_of_clip(one) for one in said if one]
     return _hash(parts)[:12]
 
 

@@ -4,10 +4,12 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.log import RunLog, TrajectoryBuffer
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
 from rotctl.metrics import disturbed
+from rotctl.metrics.chain import Link
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
 from rotctl.scenario import Scenario, model_of, require_fit
@@ -52,8 +54,8 @@ def _judged(
 ) -> Summary:
     period = 1.0 / config.controller.rate
     commanded, wanted = config.behaviour.commanded, config.duration
-    halts = config.behaviour.halts
-    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj, halts)
+    halts, links = config.behaviour.halts, links_of(config)
+    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj, halts, links)
     columns = judgement.columns
     if not isinstance(config.disturbance, Calm) and not config.disturbance.changes_model:
         columns = columns | disturbed.measure(log, period)
@@ -70,6 +72,16 @@ def _judged(
     }
     # JSON has no NaN: a number that a broken-down run does not have is null.
     return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+
+
+def links_of(config: Config) -> tuple[Link, ...]:
+    """What is asked of the parts of a chain; nothing of what is none."""
+    if not isinstance(config.behaviour, ChainSettings):
+        return ()
+    return tuple(
+        Link(one.behaviour.name, one.stages, one.behaviour.commanded, one.behaviour.halts)
+        for one in config.behaviour.parts
+    )
 
 
 def broke_down(summary: Mapping[str, Any]) -> bool:

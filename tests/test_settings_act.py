@@ -109,6 +109,27 @@ CASES = {
         r"behaviour\.finish\.(after|reach|turning|within)",
         seconds=1.5,
     ),
+    "finish by revolutions": Case(
+        (
+            "behaviour=forward_roll",
+            "+finish=stand",
+            "behaviour.finish.after=0",
+            "behaviour.finish.revolutions=2",
+        ),
+        r"behaviour\.finish\.revolutions",
+        seconds=1.5,
+    ),
+    "chain": Case(
+        (
+            "behaviour=chain",
+            "behaviour.parts=[stand,stand]",
+            "behaviour.between=null",
+            "behaviour.rest.seconds=0.1",
+            "controller=standing",
+        ),
+        r"behaviour\.rest\..*",
+        seconds=0.3,
+    ),
     "catch": Case(
         ("behaviour=forward_roll", "+catch=arm", "disturbance=push", "disturbance.time=0.3"),
         r"behaviour\.catch\..*",

@@ -4,9 +4,12 @@ from typing import Annotated
 
 from pydantic import Field
 
+from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
 
-BehaviourSettings = Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]
+BehaviourSettings = Annotated[
+    RollingSettings | StagedSettings | ChainSettings, Field(discriminator="kind")
+]
 
 __all__ = ["BehaviourSettings"]

@@ -28,6 +28,8 @@ from rotctl.motion import RollAbout
 from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
+LAST = 0.9  # [rev] before the last squat the one before is left, hands on the ground
+
 
 @validated(frozen=True, config=STRICT)
 class FinishSettings:
@@ -40,6 +42,8 @@ class FinishSettings:
         turning: the whole body turns less fast [rev/s],
         within: and the phase is so near to that in which it waits [rev].
         tasks, stages: as a staged behaviour has them.
+        revolutions: and it rolls so many before: told as it leaves the squat before the last
+            one [rev]; 0 counts none.
     """
 
     after: NonNegative
@@ -48,6 +52,12 @@ class FinishSettings:
     within: Positive
     stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
+    revolutions: NonNegative = 0.0
+
+    def told(self, time: float, phase: float) -> bool:
+        """Whether it is told to end, at a time [s] and a phase from upright [rad]."""
+        turned = not self.revolutions or phase >= tau * (self.revolutions - LAST)
+        return time >= self.after and turned
 
     def staged(self, roll_about: RollAbout, heading: Finite) -> StagedSettings:
         """The stages as a behaviour of their own.
@@ -112,12 +122,22 @@ class Finishing:
         """Memory now; the stages begin where the roll waits on its feet."""
         if before.end is not None:
             return before._replace(end=self._stages(before).advance(before.end, state))
-        over = state.time >= self._settings.after
+        over = self._settings.told(state.time, before.roll.excursion.phase)
         roll = self._roll.advance(before.roll, state, goes=not over)
         if over and self._waits(roll, state):
             begun = self._end(roll.course.turned).begin(roll.excursion.phase, state)
             return FinishingMemory(roll, begun)
         return FinishingMemory(roll)
+
+    def at_last(self, memory: FinishingMemory) -> bool:
+        """Whether it is in its last stage."""
+        return memory.end is not None and self._stages(memory).at_last(memory.end)
+
+    def over(self, memory: FinishingMemory, state: State) -> bool | None:
+        """Whether the condition of its last stage is met, for what follows; None without one."""
+        if memory.end is None:
+            return False
+        return self._stages(memory).over(memory.end, state)
 
     def _stages(self, memory: FinishingMemory) -> Staged:
         return self._end(memory.roll.course.turned)

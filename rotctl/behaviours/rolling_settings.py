@@ -11,6 +11,7 @@ from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import Finishing, FinishSettings
 from rotctl.behaviours.pacing import Halts, PaceSettings
 from rotctl.behaviours.rolling import Rolling
+from rotctl.behaviours.stages import kinds_of
 from rotctl.control import ControllerSettings
 from rotctl.errors import InputError
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -97,7 +98,11 @@ class RollingSettings:
             rate, speed = asked
             kept = rate if self.pace.keep == "rate" else speed
             asked = {kept: math.nan if self.pace.schedule else asked[kept]}
-        return asked if self.finish is None else asked | {"finish_commanded": self.finish.after}
+        if self.finish is None:
+            return asked
+        counted = {"revolutions_commanded": self.finish.revolutions}
+        asked = asked | {"finish_commanded": self.finish.after}
+        return asked | counted if self.finish.revolutions else asked
 
     @property
     def halts(self) -> Halts:
@@ -113,6 +118,11 @@ class RollingSettings:
         told = {"pace": self.pace, "course": self.course}
         found = {key: getattr(part, "schedule", ()) for key, part in told.items()}
         return {f"behaviour.{key}.schedule": all_[-1][0] for key, all_ in found.items() if all_}
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Kinds of the tasks of its finish by the names of their gains; its own are its names."""
+        return {} if self.finish is None else kinds_of(self.finish.tasks, self.finish.stages)
 
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings

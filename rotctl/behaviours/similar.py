@@ -10,6 +10,8 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from rotctl.behaviours.balance import Capture, Lunge
+from rotctl.behaviours.chain_settings import PartSettings
+from rotctl.behaviours.chaining import RestSettings
 from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight_settings import FlightSettings
 from rotctl.behaviours.landing import LandingSettings
@@ -24,6 +26,7 @@ from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.touching import Airborne, Launched, Touches
 from rotctl.behaviours.until import After, Leaves, Low, Over, Passed, Still
 from rotctl.behaviours.wheeling import Carry, Place, Stride
+from rotctl.control.similar import similar_gains
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")
@@ -104,6 +107,7 @@ UNITS: Units = {
     | all_of(rate, "own", "settling")
     | all_of(speed, "easing"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
+    RestSettings: all_of(time, "seconds") | all_of(speed, "speed"),
 }
 """Of settings, what has a unit that grows; `TaskSettings.point` has one for points."""
 
@@ -127,6 +131,8 @@ def _grown(value: Any, by: Likeness, units: Units) -> Any:
     known = units.get(type(value), {})
     if isinstance(value, TaskSettings) and value.kind == "point":
         known = {"point": length}
+    if isinstance(value, PartSettings) and value.gains:
+        value = replace(value, gains=similar_gains(value.gains, by, value.behaviour.kinds))
     made = {}
     for part in fields(value):
         before, unit = getattr(value, part.name), known.get(part.name)

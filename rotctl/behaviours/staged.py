@@ -240,6 +240,17 @@ class Staged:
         law = self._poses[memory.stage]
         return memory._replace(aloft=law.advance(memory.aloft, scene, self._period))
 
+    def at_last(self, memory: StagedMemory) -> bool:
+        """Whether it is in its last stage."""
+        return memory.stage + 1 == len(self._stages)
+
+    def over(self, memory: StagedMemory, state: State) -> bool | None:
+        """Whether the condition of its last stage is met, for what follows; None without one."""
+        until = self._stages[-1].until
+        if until is None:
+            return None
+        return self.at_last(memory) and until.met(self._scene(memory, state))
+
     def _following(self, number: int, scene: Scene) -> int | None:
         """The stage that begins now, if one does."""
         stage, last = self._stages[number], number + 1 == len(self._parts)

@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.facing import TurnAbout
 from rotctl.behaviours.flight_settings import TUCK
 from rotctl.behaviours.staged import Staged
-from rotctl.behaviours.stages import Stage, TaskSettings
+from rotctl.behaviours.stages import Stage, TaskSettings, kinds_of
 from rotctl.behaviours.touching import Launched
 from rotctl.control import ControllerSettings
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -74,6 +74,11 @@ class StagedSettings:
     def halts(self) -> tuple[()]:
         """Stages have none."""
         return ()
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Kinds of its tasks by the names of their gains."""
+        return kinds_of(self.tasks, self.stages)
 
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings

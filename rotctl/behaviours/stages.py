@@ -1,6 +1,6 @@
 """What a stage of a behaviour says: its tasks with their aims, its poses, and what ends it."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field, fields, replace
 from typing import Any
 
@@ -120,6 +120,12 @@ class Stage:
                 f"the stage {self.name!r} must have one of poses, rise, turn, glide, reach and "
                 f"flight, not {given}"
             )
+
+
+def kinds_of(tasks: Mapping[str, TaskSettings], stages: Iterable[Stage]) -> dict[str, str]:
+    """Kinds of the tasks of all stages and of each, by the names of their gains."""
+    every = [tasks, *(stage.tasks for stage in stages)]
+    return {task.gains or name: task.kind for some in every for name, task in some.items()}
 
 
 def mirrored(stage: Stage, model: Model) -> Stage:

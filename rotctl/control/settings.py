@@ -72,6 +72,19 @@ class ContactGains:
 
 
 @validated(frozen=True, config=STRICT)
+class Gains:
+    """What of a controller a behaviour brings along; see `ControllerSettings`."""
+
+    supervisor: SupervisorName
+    thresholds: Thresholds
+    contact: ContactGains
+    pose: PoseGains
+    tasks: dict[str, TaskGains]
+    poses: dict[str, PoseGains] = field(default_factory=dict)
+    contacts: dict[str, ContactGains] = field(default_factory=dict)
+
+
+@validated(frozen=True, config=STRICT)
 class ControllerSettings:
     """Everything the whole-body controller can be told.
 

@@ -5,13 +5,21 @@ mass, length and time, so that the problem that is solved is the same one.
 """
 
 from dataclasses import replace
+from typing import TypeVar
 
-from rotctl.control.settings import ContactGains, ControllerSettings, PoseGains, TaskGains
+from rotctl.control.settings import (
+    ContactGains,
+    ControllerSettings,
+    Gains,
+    PoseGains,
+    TaskGains,
+)
 from rotctl.control.supervisor import Thresholds
 from rotctl.mechanics.merging import Merging
 from rotctl.mechanics.stature import Likeness
 from rotctl.settings import Vector
 
+G = TypeVar("G", ControllerSettings, Gains)
 # By the kind of a task, of what its rows are in: N, N m; an acceleration is the same for all.
 FORCES, TORQUES = ("linear",), ("spin", "angular_momentum")
 
@@ -26,10 +34,15 @@ def similar(
     """
     if by.same:
         return settings
+    merging = Merging(settings.merging.distance * by.size, settings.merging.angle)
+    return replace(similar_gains(settings, by, kinds), merging=merging)
+
+
+def similar_gains(settings: G, by: Likeness, kinds: dict[str, str]) -> G:
+    """The same of what a behaviour brings along."""
     return replace(
         settings,
         thresholds=_thresholds(settings.thresholds, by),
-        merging=Merging(settings.merging.distance * by.size, settings.merging.angle),
         contact=_contact(settings.contact, by),
         contacts={name: _contact(gains, by) for name, gains in settings.contacts.items()},
         pose=_pose(settings.pose, by),

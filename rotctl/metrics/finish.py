@@ -19,6 +19,7 @@ from rotctl.same import kept
 from rotctl.settings import STRICT, Positive
 
 ROOT = 1  # the character's first body
+HALF = 0.5  # [rev] off the number that is wanted is another number
 
 COLUMNS = (
     Column("finish_commanded", "Told to end on its feet", "s"),
@@ -85,6 +86,13 @@ def upright(mj: mujoco.MjModel) -> float:
     return float(data.subtree_com[ROOT, 2])
 
 
+def _miscounted(revolutions: float, wanted: float) -> str:
+    """That it has not rolled as often as it was to; any number is right where none is wanted."""
+    if not wanted or abs(revolutions - wanted) < HALF:
+        return ""
+    return f"rolled {revolutions:.1f} of {wanted:g} revolutions"
+
+
 def judge(
     log: Arrays,
     criteria: FinishCriteria,
@@ -102,7 +110,8 @@ def judge(
         halts: when it is told to halt, and until when [s].
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
-    part = rolled(log, commanded["finish_commanded"])
+    counted = commanded.get("revolutions_commanded", 0.0)
+    part = _Part(log, slice(0, row)) if counted else rolled(log, commanded["finish_commanded"])
     direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
     roll = rolling.measure(part, criteria.roll, direction, period, halts)
     rest = max(row, steps - round(criteria.stand.rest / period))
@@ -114,6 +123,7 @@ def judge(
     reason = (
         failure_reason(roll, criteria.roll, roll.duration)
         or ("never stood up" if row == steps else "")
+        or _miscounted(roll.revolutions, counted)
         or standing.failure(stood, settings, (steps - rest) * period)
         or (f"stands {height:.2f} m high" if height <= criteria.height * upright else "")
     )

@@ -1,17 +1,19 @@
 """The verdict of a run by its criteria: one kind of criteria for each class of motion."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import mujoco
 import numpy as np
 from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import (
     acrobatic,
     appearance,
+    chain,
     disturbed,
     dive,
     early,
@@ -25,6 +27,7 @@ from rotctl.metrics import (
     standing,
 )
 from rotctl.metrics.acrobatic import AcrobaticCriteria
+from rotctl.metrics.chain import Link
 from rotctl.metrics.columns import Arrays, floats, solver_failures
 from rotctl.metrics.dive import DiveCriteria
 from rotctl.metrics.finish import FinishCriteria
@@ -36,8 +39,9 @@ from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
+from rotctl.settings import STRICT
 
-Criteria = Annotated[
+Single = Annotated[
     AcrobaticCriteria
     | DiveCriteria
     | FinishCriteria
@@ -48,6 +52,19 @@ Criteria = Annotated[
     | StandingCriteria,
     Field(discriminator="kind"),
 ]
+
+
+@validated(frozen=True, config=STRICT)
+class ChainCriteria:
+    """Each part of a chain by criteria of its own; see `conf/criteria/chain.yaml`."""
+
+    name: str
+    kind: Literal["chain"]
+    parts: Annotated[tuple[Single, ...], Field(max_length=20)] = ()
+    description: str = ""
+
+
+Criteria = Annotated[Single | ChainCriteria, Field(discriminator="kind")]
 _KINDS = (
     rolling,
     appearance,
@@ -60,6 +77,7 @@ _KINDS = (
     finish,
     acrobatic,
     getting_up,
+    chain,
     disturbed,
 )
 COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
@@ -86,6 +104,7 @@ def judge(
     wanted: float,
     mj: mujoco.MjModel | None = None,
     halts: Halts = (),
+    links: Sequence[Link] = (),
 ) -> Judgement:
     """Judge a run.
 
@@ -97,12 +116,15 @@ def judge(
         mj: what was simulated; without it nobody sees what a roll looks like, nor how high it
             stands in the end for its size.
         halts: when a roll is told to halt, and until when [s].
+        links: what was asked of the parts of a chain.
     """
     steps = len(floats(log, "trajectory/time"))
     failures = solver_failures(log)
     asked = dict(commanded)
     upright = math.nan if mj is None else finish.upright(mj)
-    if isinstance(criteria, RollingCriteria | FinishCriteria):
+    if isinstance(criteria, ChainCriteria):
+        found, reason = _chained(log, criteria, period, mj, links)
+    elif isinstance(criteria, RollingCriteria | FinishCriteria):
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
             found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
@@ -131,7 +153,7 @@ def judge(
     else:
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
-    if reason and steps:
+    if reason and steps and not isinstance(criteria, ChainCriteria):
         reason = early.too_short(log, criteria, commanded, found, period) or reason
     if steps * period < wanted - 1e-6:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
@@ -140,6 +162,35 @@ def judge(
     torque = found["torque_p99_fraction"] if "torque_p99_fraction" in found else _torque(log)
     common = {"duration": steps * period, "torque_p99_fraction": torque}
     return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
+
+
+def _chained(
+    log: Arrays,
+    criteria: ChainCriteria,
+    period: float,
+    mj: mujoco.MjModel | None,
+    links: Sequence[Link],
+) -> tuple[dict[str, Any], str]:
+    """Columns of a chain, and why it is no success; empty if each of its parts is one."""
+    parts = chain.spans(log, links)
+    reasons = []
+    for part, own, link in zip(parts, criteria.parts, links, strict=False):
+        first, end = part.rows
+        wanted = (end - first) * period
+        made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
+        reasons.append(made.reason)
+    found = {
+        "parts_succeeded": sum(not reason for reason in reasons),
+        "parts_begun": len(parts),
+        "parts": chain.told(log, links, parts, reasons),
+    }
+    for number, (link, reason) in enumerate(zip(links, reasons, strict=False), 1):
+        if reason:
+            return found, f"part {number} of {len(links)}, {link.name}: {reason}"
+    if len(parts) < len(links):
+        number = len(parts) + 1
+        return found, f"part {number} of {len(links)}, {links[len(parts)].name}, has not begun"
+    return found, ""
 
 
 def _torque(log: Arrays) -> float:

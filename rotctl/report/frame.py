@@ -1,7 +1,7 @@
 """One frame of a run: the drawn model, its contacts and forces, and metres on the ground."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
@@ -93,6 +93,14 @@ def stage_names(log: RunLog) -> list[str]:
     except InputError:
         return []
     behaviour = find(config, ("behaviour",))
+    parts = find(behaviour, ("parts",))
+    if isinstance(parts, list):
+        every = [_stages(find(part, ("behaviour",))) or ["roll"] for part in parts]
+        return [name for names in every for name in names]
+    return _stages(behaviour)
+
+
+def _stages(behaviour: Any) -> list[str]:
     finish = find(behaviour, ("finish", "stages"))
     staged = find(behaviour, ("stages",)) if finish is NOTHING else finish
     names = [find(one, ("name",)) for one in staged] if isinstance(staged, list) else []

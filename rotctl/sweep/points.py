@@ -19,6 +19,7 @@ from rotctl.schema import Config, changed
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
 from rotctl.written import to_dict
 
+PARTS = "behaviour.parts"  # of a chain, which are composed themselves
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]
 
@@ -77,7 +78,7 @@ def _values(override: str) -> list[Assignment]:
 def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Config:
     """As `config.load`, but quick where only plain values differ from an earlier point."""
     texts = [one.text for one in assignments]
-    if any(one.ordered for one in assignments):
+    if any(one.ordered or one.key.startswith(PARTS) for one in assignments):
         return load(texts)
     choosing = tuple(one.text for one in assignments if one.way is None)
     if choosing not in bases:

@@ -1,0 +1,106 @@
+"""What a chain of behaviours is told."""
+
+from dataclasses import replace
+from typing import Annotated, Literal
+
+from pydantic import Field
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.chaining import Chain, Part, RestSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.behaviours.staged_settings import StagedSettings
+from rotctl.control import ControllerSettings
+from rotctl.control.settings import Gains
+from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.model import Model
+from rotctl.motion import RollAbout
+from rotctl.settings import STRICT
+
+
+@validated(frozen=True, config=STRICT)
+class PartSettings:
+    """One behaviour of a chain.
+
+    Attributes:
+        behaviour: as it is by itself.
+        gains: its own; the run's controller's, if it has none.
+        excursion: how AE and the phase are measured; as the run measures them, if it does not say.
+    """
+
+    behaviour: Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]
+    gains: Gains | None = None
+    excursion: ExcursionSettings | None = None
+
+    @property
+    def stages(self) -> int:
+        """How many it has; a roll is one."""
+        if isinstance(self.behaviour, StagedSettings):
+            return len(self.behaviour.stages)
+        return 1 if self.behaviour.finish is None else 1 + len(self.behaviour.finish.stages)
+
+    @property
+    def ends(self) -> bool:
+        """Whether it comes to an end by itself."""
+        return isinstance(self.behaviour, StagedSettings) or self.behaviour.finish is not None
+
+    def make(
+        self,
+        heading: float,
+        model: Model,
+        control: ControllerSettings,
+        measured: ExcursionSettings,
+    ) -> Part:
+        """The behaviour of one run, along a heading [deg]."""
+        own = control if self.gains is None else replace(control, **vars(self.gains))
+        behaviour = replace(self.behaviour, heading=heading)
+        return behaviour.make(model, own, self.excursion or measured)
+
+
+@validated(frozen=True, config=STRICT)
+class ChainSettings:
+    """Behaviours one after the other.
+
+    Attributes:
+        parts: in their order.
+        rest: what ends a part whose last stage has no condition.
+    """
+
+    name: str
+    kind: Literal["chain"]
+    parts: Annotated[tuple[PartSettings, ...], Field(min_length=1, max_length=20)]
+    rest: RestSettings
+    source: str = ""
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        for number, part in enumerate(self.parts[:-1]):
+            if not part.ends:
+                raise ValueError(
+                    f"parts[{number}]: {part.behaviour.name} rolls on, and others follow it; "
+                    "'behaviour=NAME +finish=stand' comes to an end"
+                )
+
+    @property
+    def roll_about(self) -> RollAbout:
+        """Of the first part, that starts."""
+        return self.parts[0].behaviour.roll_about
+
+    @property
+    def commanded(self) -> dict[str, float]:
+        """Nothing of the whole: parts have their own."""
+        return {}
+
+    @property
+    def halts(self) -> tuple[()]:
+        """Nothing of the whole."""
+        return ()
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Kinds of the tasks by the names of their gains, of parts without gains of their own."""
+        shared = [part.behaviour.kinds for part in self.parts if part.gains is None]
+        return {name: kind for kinds in shared for name, kind in kinds.items()}
+
+    def make(self, model: Model, control: ControllerSettings, measured: ExcursionSettings) -> Chain:
+        """The behaviour of one run."""
+        return Chain(self, model, control, measured)

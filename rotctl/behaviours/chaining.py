@@ -1,0 +1,193 @@
+"""One behaviour after the other in one run: each begins where the one before stands.
+
+A part is what it is by itself: it has its own stages, gains and time, which begins with it. It
+heads where the feet point as it begins. What ends it is the condition of its last stage, or,
+where that has none, a rest on the feet.
+"""
+
+from functools import lru_cache
+from math import atan2, cos, degrees, fsum, radians
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.behaviour import Behaviour, Placement, Signals
+from rotctl.behaviours.facing import frame_of
+from rotctl.behaviours.finishing import Finishing
+from rotctl.behaviours.rolling import Rolling
+from rotctl.behaviours.staged import Staged
+from rotctl.behaviours.support import forward
+from rotctl.control import Command, ControllerSettings
+from rotctl.errors import InputError
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.state import State
+from rotctl.rotations import dot
+from rotctl.settings import STRICT, NonNegative, Positive
+
+if TYPE_CHECKING:  # which makes this one
+    from rotctl.behaviours.chain_settings import ChainSettings
+
+Part = Staged | Rolling | Finishing
+
+
+@validated(frozen=True, config=STRICT)
+class RestSettings:
+    """When a part that has come to its last stage is over.
+
+    Attributes:
+        seconds: it has rested for so long [s].
+        feet: that alone touch the ground meanwhile.
+        lean: of the trunk at most [deg].
+        speed: of the centre of mass at most [m/s].
+        height: of it at least, as a share of that as the part began [-].
+    """
+
+    seconds: NonNegative
+    feet: tuple[str, ...]
+    lean: Positive
+    speed: Positive
+    height: Positive
+
+
+class ChainMemory(NamedTuple):
+    """What a chain remembers from one control step to the next.
+
+    Attributes:
+        part: its number.
+        inner: what that remembers.
+        heading: of it [deg].
+        begun: when it began [s].
+        height: of the centre of mass over the ground then [m].
+        rested: for how long [s].
+    """
+
+    part: int
+    inner: Any
+    heading: float
+    begun: float
+    height: float
+    rested: float = 0.0
+
+
+class Chain:
+    """A chain in one run."""
+
+    def __init__(
+        self,
+        settings: "ChainSettings",
+        model: Model,
+        control: ControllerSettings,
+        measured: ExcursionSettings,
+    ) -> None:
+        """Prepare the parts.
+
+        Raises:
+            InputError: a part does not fit the model or has no gains, or one that is to begin
+                from standing lies.
+        """
+        self._settings, self._model, self._period = settings, model, 1.0 / control.rate
+        self._feet = {*body_ids(model.mj, settings.rest.feet, "behaviour.rest.feet")}
+        for number, part in enumerate(settings.parts):
+            if number and part.behaviour.roll_about == "head":
+                raise InputError(
+                    f"behaviour.parts[{number}]: {part.behaviour.name} rolls about the head, "
+                    "lying, and cannot begin from standing"
+                )
+
+        @lru_cache(maxsize=len(settings.parts))
+        def made(number: int, heading: float) -> Part:
+            return settings.parts[number].make(heading, model, control, measured)
+
+        self._made = made
+        first = [made(i, part.behaviour.heading) for i, part in enumerate(settings.parts)]
+        self.axes = first[0].axes
+        self.tasks = tuple(dict.fromkeys(name for part in first for name in part.tasks))
+        self._slots = [[self.tasks.index(name) for name in part.tasks] for part in first]
+
+    def start(self, pitch: float) -> Placement:
+        """As the first part."""
+        return self._first.start(pitch)
+
+    def begin(self, pitch: float, state: State) -> ChainMemory:
+        """Memory at the start."""
+        heading, height = self._settings.parts[0].behaviour.heading, self._height(state)
+        return ChainMemory(0, self._first.begin(pitch, state), heading, state.time, height)
+
+    @property
+    def _first(self) -> Behaviour[Any]:
+        return self._made(0, self._settings.parts[0].behaviour.heading)
+
+    def advance(self, before: ChainMemory, state: State) -> ChainMemory:
+        """Memory now; the next part begins where the present one is over."""
+        behaviour: Behaviour[Any] = self._part(before)
+        inner = behaviour.advance(before.inner, _since(before, state))
+        rested = before.rested + self._period if self._rests(before, state) else 0.0
+        memory = before._replace(inner=inner, rested=rested)
+        last = before.part + 1 == len(self._settings.parts)
+        return memory if last or not self._over(memory, state) else self._next(memory, state)
+
+    def _over(self, memory: ChainMemory, state: State) -> bool:
+        part = self._part(memory)
+        if isinstance(part, Rolling):  # it rolls on
+            return False
+        own = part.over(memory.inner, _since(memory, state))
+        # One step more than its rest, so that whoever looks at its last rows sees the whole of it.
+        rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period
+        return rested and part.at_last(memory.inner) if own is None else own
+
+    def _next(self, memory: ChainMemory, state: State) -> ChainMemory:
+        number = memory.part + 1
+        settings = self._settings.parts[number].behaviour
+        about = settings.roll_about
+        heading = self._facing(state) + (180.0 if about == "right" else 0.0)
+        frame = frame_of(about, heading, getattr(settings, "turn_about", "left"))
+        begun = ChainMemory(number, None, heading, state.time, self._height(state))
+        behaviour: Behaviour[Any] = self._part(begun)
+        pitch = frame.turned(state.trunk_axes)
+        return begun._replace(inner=behaviour.begin(pitch, _since(begun, state)))
+
+    def _part(self, memory: ChainMemory) -> Part:
+        return self._made(memory.part, memory.heading)
+
+    def _rests(self, memory: ChainMemory, state: State) -> bool:
+        rest, momentum = self._settings.rest, state.momentum
+        touching = set(state.contacts.body.tolist())
+        velocity = momentum.com_velocity
+        return (
+            bool(touching)
+            and touching <= self._feet
+            and float(state.trunk_axes[2, 2]) > cos(radians(rest.lean))
+            and dot(velocity, velocity) < rest.speed**2
+            and self._height(state) > rest.height * memory.height
+        )
+
+    def _facing(self, state: State) -> float:
+        """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they."""
+        fronts = [forward(state, foot) for foot in sorted(self._feet)]
+        return degrees(atan2(fsum(y for _, y in fronts), fsum(x for x, _ in fronts)))
+
+    def _height(self, state: State) -> float:
+        x, y, z = state.momentum.com.tolist()
+        return float(z) - self._model.ground.height(x, y)
+
+    def command(self, memory: ChainMemory, state: State) -> Command:
+        """What the present part wants at this instant."""
+        behaviour: Behaviour[Any] = self._part(memory)
+        command = behaviour.command(memory.inner, _since(memory, state))
+        slots = self._slots[memory.part]
+        own = range(len(slots)) if command.slots is None else command.slots
+        return command._replace(slots=[slots[slot] for slot in own])
+
+    def signals(self, memory: ChainMemory, state: State) -> Signals:
+        """What the log keeps of it; stages are numbered on from part to part."""
+        behaviour: Behaviour[Any] = self._part(memory)
+        signals = behaviour.signals(memory.inner, _since(memory, state))
+        before = sum(part.stages for part in self._settings.parts[: memory.part])
+        return signals._replace(stage=signals.stage + before)
+
+
+def _since(memory: ChainMemory, state: State) -> State:
+    """The state at the part's own time."""
+    return state._replace(time=state.time - memory.begun)

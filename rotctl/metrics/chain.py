@@ -1,0 +1,81 @@
+"""A chain of behaviours in numbers: which part lasted from when to when, each by itself."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.halts import Halts
+
+COLUMNS = (
+    Column("parts_succeeded", "Parts that succeeded", ""),
+    Column("parts_begun", "Parts that began", ""),
+    Column("parts", "Each part, when it began [s], and what came of it", ""),
+)
+
+
+class Link(NamedTuple):
+    """What was asked of one part.
+
+    Attributes:
+        name: of its behaviour.
+        stages: how many it has.
+        commanded, halts: see `rotctl.metrics.judge.judge`.
+    """
+
+    name: str
+    stages: int
+    commanded: Mapping[str, float]
+    halts: Halts = ()
+
+
+@dataclass(frozen=True)
+class Span:
+    """Some rows of a log, as a log of their own that begins at time 0 in stage 0.
+
+    Attributes:
+        log: that they are of.
+        rows: first one, and the one after the last.
+        stage: number of the part's first.
+    """
+
+    log: Arrays
+    rows: tuple[int, int]
+    stage: int
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Those rows of one array."""
+        whole = np.asarray(self.log[name])
+        if name.startswith(("model/", "events/")):
+            return whole
+        own = whole[slice(*self.rows)]
+        if name == "trajectory/time":
+            return np.asarray(own - own[:1])
+        return np.asarray(own - self.stage) if name == "command/stage" else own
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is one of that name."""
+        return name in self.log
+
+
+def spans(log: Arrays, links: Sequence[Link]) -> list[Span]:
+    """The rows of each part that has begun, in their order."""
+    stage = np.asarray(log["command/stage"])
+    first = np.concatenate(([0], np.cumsum([link.stages for link in links]))).tolist()
+    found = []
+    for begin, end in zip(first, first[1:], strict=False):
+        rows = np.flatnonzero((stage >= begin) & (stage < end))
+        if len(rows):
+            found.append(Span(log, (int(rows[0]), int(rows[-1]) + 1), begin))
+    return found
+
+
+def told(log: Arrays, links: Sequence[Link], parts: Sequence[Span], reasons: Sequence[str]) -> str:
+    """Each part in words, for a summary row."""
+    time = floats(log, "trajectory/time")
+    return "; ".join(
+        f"{link.name} {time[part.rows[0]]:.2f}: {reason or 'success'}"
+        for link, part, reason in zip(links, parts, reasons, strict=False)
+    )

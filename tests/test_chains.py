@@ -1,0 +1,219 @@
+"""Behaviours one after the other: how a chain is written, when a part is over, how it is judged."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rotctl.config import load
+from rotctl.control.similar import similar_gains
+from rotctl.errors import InputError
+from rotctl.log import RunLog
+from rotctl.mechanics.stature import gains_likeness
+from rotctl.metrics.chain import Link, spans
+from rotctl.metrics.judge import ChainCriteria, judge
+from rotctl.report.frame import stage_names
+from rotctl.run import in_memory, run
+from rotctl.scenario import build, run_id
+from rotctl.schema import check
+from rotctl.summary import links_of, summarise
+from rotctl.written import to_dict
+
+QUICK = ["behaviour=chain", "behaviour.rest.seconds=0.2", "controller=standing"]
+
+
+def chain(*parts, more=()):
+    said = ",".join(f'"{part}"' for part in parts)
+    return load(["behaviour=chain", f"behaviour.parts=[{said}]", *more])
+
+
+def simulated(config):
+    scenario = build(config)
+    buffer, ending = in_memory(scenario)
+    return buffer.arrays(), summarise(scenario, buffer, ending, 1.0)
+
+
+# ---------------------------------------------------------------- how it is written
+
+
+def test_parts_are_what_they_are_by_themselves():
+    made = chain("back_flip", "behaviour=back_flip behaviour.shape=tuck", more=["seed=3"])
+    alone = load(["behaviour=back_flip"])
+    first, between, last = made.behaviour.parts
+    assert first.behaviour == last.behaviour == alone.behaviour
+    assert between.behaviour.name == "square"
+    assert made.criteria.parts[0] == made.criteria.parts[2] == alone.criteria
+    assert made.criteria.parts[1].kind == "landing"
+    assert (first.gains, first.excursion) == (None, None)  # the run's are the same by name
+
+
+def test_a_part_brings_its_gains_where_the_run_has_others():
+    made = load(["behaviour=forward_roll_twice"])
+    stand, tip, roll = made.behaviour.parts
+    assert stand.gains.tasks == load(["behaviour=stand"]).controller.tasks
+    assert tip.gains.poses == load(["controller=acrobatic"]).controller.poses
+    assert roll.gains is None
+    assert made.controller.name == "listening"
+    assert (stand.excursion, tip.excursion.name) == (None, "trunk")
+
+
+def test_nothing_goes_between_where_a_part_says_when_it_ends():
+    """The last stage of `tip_over` has a condition: the roll goes on from there."""
+    said = ("tip_over", "forward_roll +finish=stand", "stand")
+    names = [part.behaviour.name for part in chain(*said).behaviour.parts]
+    assert names == ["tip_over", "forward_roll", "square", "stand"]
+    plain = chain(*said, more=["behaviour.between=null"])
+    assert len(plain.behaviour.parts) == 3
+
+
+def test_a_chain_out_of_a_log_is_the_same_run():
+    made = chain("stand", "back_flip")
+    again = check(to_dict(made))
+    assert again == made
+    assert run_id(again, build(again).known) == run_id(made, build(made).known)
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        (["back_flap"], 'behaviour.parts[0]: behaviour="back_flap": no such choice; did you mean '
+         "back_flip?"),
+        (["chain"], 'behaviour.parts[0]="chain": is a chain; name its parts'),
+        (["stand", ""], 'behaviour.parts[1]="": must begin with a behaviour, back_flip or '
+         "behaviour=back_flip"),
+        (["stand seed=3"], 'behaviour.parts[0]: "seed=3": a part may say behaviour, catch, course, '
+         "criteria, finish"),
+        (["stand character={kind:mjcf,file:/etc/passwd}"], "behaviour.parts[0]: "),
+        (["stand 'x"], "behaviour.parts[0]=\"stand 'x\": No closing quotation"),
+        (["forward_roll", "stand"], "behaviour: parts[0]: forward_roll rolls on, and others follow "
+         "it; 'behaviour=NAME +finish=stand' comes to an end"),
+        (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20"),
+    ],
+)  # fmt: skip
+def test_parts_that_are_wrong(parts, message):
+    with pytest.raises(InputError) as caught:
+        chain(*parts)
+    assert str(caught.value).startswith(message)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_log_roll_begins_lying():
+    config = chain("stand", "behaviour=log_roll")
+    with pytest.raises(InputError, match=r"parts\[2\]: log_roll rolls about the head, lying"):
+        build(config)
+
+
+def test_criteria_are_as_many_as_parts():
+    config = chain("stand", "stand")
+    one = replace(config, criteria=ChainCriteria("few", "chain", config.criteria.parts[:1]))
+    with pytest.raises(InputError, match=r"criteria.parts: 1 of them, and behaviour=chain has 3"):
+        build(one)
+
+
+def test_gains_of_a_part_fit_the_body():
+    """A child's are those of the run scaled by the same law."""
+    child = ["character.height=1.2", "character.mass=23"]
+    config = load(["behaviour=forward_roll_twice", *child])
+    by = gains_likeness(config.character)
+    part = config.behaviour.parts[0]
+    scaled = similar_gains(part.gains, by, part.behaviour.kinds)
+    alone = build(load(["behaviour=stand", *child])).controller.settings
+    assert scaled.tasks["balance"] == alone.tasks["balance"]
+    assert scaled.contact == alone.contact != part.gains.contact
+    assert build(config).behaviour.tasks  # and it is made of them
+
+
+# ---------------------------------------------------------------- what it does
+
+
+def test_a_chain_of_one_is_the_behaviour():
+    """The same bits, until it is in the air."""
+    more = ["seed=2003", "duration=2"]
+    alone, _ = simulated(load(["behaviour=back_flip", *more]))
+    chained, _ = simulated(chain("back_flip", more=more))
+    assert (alone["trajectory/qpos"] == chained["trajectory/qpos"]).all()
+    assert (alone["trajectory/ctrl"] == chained["trajectory/ctrl"]).all()
+
+
+@pytest.fixture(scope="module")
+def stands():
+    """Three stands, each over after a fifth of a second of rest."""
+    config = load([*QUICK, "behaviour.parts=[stand,stand,stand]", "behaviour.between=null",
+                   "seed=2000", "duration=3"])  # fmt: skip
+    return (config, *simulated(config))
+
+
+def test_the_next_part_begins_after_a_rest(stands):
+    config, log, summary = stands
+    stage = np.asarray(log["command/stage"])
+    first, second = np.flatnonzero(np.diff(stage)) + 1
+    assert stage[[0, first, second, -1]].tolist() == [0, 1, 2, 2]
+    assert second - first == round(0.2 * config.controller.rate) + 1  # it rests already
+    speed = np.sqrt((log["trajectory/com_velocity"] ** 2).sum(axis=1))
+    assert (speed[first - 12 : first] < config.behaviour.rest.speed).all()
+    assert summary["parts_begun"] == 3
+
+
+def test_a_part_heads_where_the_feet_point(stands):
+    _, log, _ = stands
+    axes = log["command/axes"]
+    assert (axes[0] == np.eye(3)).all()
+    x, y, z = axes[-1][0].tolist()
+    assert (abs(y) > 0.0, z) == (True, 0.0)  # scattered feet are not quite straight
+    assert x > 0.99
+
+
+def test_each_part_is_judged_by_itself(stands):
+    """The first two rested for less than their criteria ask for."""
+    config, log, summary = stands
+    assert summary["failure_reason"].startswith("part 1 of 3, stand: ")
+    assert summary["parts_succeeded"] == 1  # the last one stands for more than two seconds
+    parts = spans(log, links_of(config))
+    for part, words in zip(parts, summary["parts"].split("; "), strict=True):
+        assert words.startswith(f"stand {log['trajectory/time'][part.rows[0]]:.2f}: ")
+        assert part["trajectory/time"][0] == 0.0
+        assert part["command/stage"].max() == 0
+    assert sum(len(part["trajectory/time"]) for part in parts) == len(log["trajectory/time"])
+
+
+def test_a_part_that_never_begins(stands):
+    """Told by its number, where all that began are successes."""
+    config, log, _ = stands
+    lenient = replace(config.criteria.parts[0], rest=0.1)
+    asked = [Link("stand", 1, {}), Link("stand", 1, {}), Link("stand", 1, {}), Link("fly", 1, {})]
+    criteria = ChainCriteria("four", "chain", (lenient,) * 4)
+    found = judge(log, criteria, {}, 1 / config.controller.rate, 3.0, links=asked)
+    assert found.reason == "part 4 of 4, fly, has not begun"
+    assert (found.columns["parts_succeeded"], found.columns["parts_begun"]) == (3, 3)
+
+
+def test_pictures_name_the_stages_of_all_parts(tmp_path):
+    config = load(["behaviour=forward_roll_twice", "duration=0.1"])
+    made = run(config, tmp_path)
+    names = stage_names(RunLog.open(made.folder / "run.h5"))
+    assert names == ["stand", "stand", "squat", "tip", "roll", "stand"]
+
+
+# ---------------------------------------------------------------- rolls, counted
+
+
+def test_a_roll_is_told_by_its_revolutions():
+    finish = load(["behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=0"])
+    counted = replace(finish.behaviour.finish, revolutions=2.0)
+    told = [counted.told(5.0, 2 * np.pi * turned) for turned in (0.0, 1.05, 1.15, 2.0)]
+    assert told == [False, False, True, True]
+    assert replace(counted, after=6.0).told(5.0, 9.0) is False
+    asked = replace(finish.behaviour, finish=counted).commanded
+    assert asked["revolutions_commanded"] == 2.0
+    assert "revolutions_commanded" not in finish.behaviour.commanded
+
+
+def test_two_rolls_out_of_a_stand():
+    """Nine of ten starts roll twice and stand up: that none of two does is no chance."""
+    rolled = 0
+    for seed in (2000, 2003):
+        config = load(["behaviour=forward_roll_twice", f"seed={seed}", "duration=11"])
+        _, summary = simulated(config)
+        assert summary["parts_begun"] == 3
+        rolled += summary["success"]
+    assert rolled
