@@ -103,8 +103,8 @@ ANEW = Making()
 
 def shared() -> Making:
     """For runs each of which is over before the next one begins: the same parts serve them all."""
-    keep = kept(most=8)
-    return Making(keep(Controller), keep(behaviour_of), keep(mujoco.MjData))
+    keep, few = kept(most=8), kept(most=2)  # MuJoCo's memory is of some megabytes
+    return Making(keep(Controller), keep(behaviour_of), few(mujoco.MjData))
 
 
 def build(config: Config, making: Making = ANEW) -> Scenario:
