@@ -55,15 +55,15 @@ def test_faster_is_faster():
             "back_flip",
             1.6,
             "behaviour.target_excursion=-360: to turn so far in 0.41 s asks for 59 kg m2/s in the "
-            "tightest shape, and legs give at most 50; with behaviour.take_off=1.9 it is possible "
-            "here",
+            "tightest shape, and the push gives at most 50; with behaviour.take_off=1.9 it is "
+            "possible here",
         ),
         (
             "front_flip",
             2.0,
             "behaviour.target_excursion=360: to turn so far in 0.44 s asks for 59 kg m2/s in the "
-            "tightest shape, and legs give at most 50; with behaviour.take_off=2.3 it is possible "
-            "here",
+            "tightest shape, and the push gives at most 50; with behaviour.take_off=2.3 it is "
+            "possible here",
         ),
         (
             "front_flip",
