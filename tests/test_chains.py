@@ -13,6 +13,7 @@ from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.chain import Link, spans
 from rotctl.metrics.judge import ChainCriteria, judge
 from rotctl.report.frame import stage_names
+from rotctl.results.keys import value_at
 from rotctl.run import in_memory, run
 from rotctl.scenario import build, run_id
 from rotctl.schema import check
@@ -71,6 +72,13 @@ def test_a_chain_out_of_a_log_is_the_same_run():
     again = check(to_dict(made))
     assert again == made
     assert run_id(again, build(again).known) == run_id(made, build(made).known)
+
+
+def test_a_table_names_the_parts():
+    """A column of a sweep over them has no room for more."""
+    data = to_dict(chain("stand", "back_flip"))
+    assert value_at(data, "behaviour.parts") == "stand, square, back_flip"
+    assert list(value_at(data, "behaviour.rest.feet")) == ["foot_l", "foot_r"]
 
 
 @pytest.mark.parametrize(
