@@ -99,7 +99,7 @@ def fly(scenario, momentum, height, up, pitch, across=(0.0, 0.0)):
     data, law = episode.data, scenario.behaviour._laws["flight"]
     sense, entry = law._sense, law._usual
     wanted = np.array([across[0], sense * momentum, across[1]])
-    spawn(model, data, law.pose(-0.6, entry), sense * pitch, height, up, wanted)
+    spawn(model, data, law.tucking.pose(-0.6, entry), sense * pitch, height, up, wanted)
     first = None
     solid = is_character(model.mj)[model.mj.geom_bodyid] & (model.mj.geom_contype > 0)
     for moment in episode:

@@ -51,7 +51,7 @@ def test_a_diver_spins_about_the_axis_of_greatest_inertia(behaviour, shape):
     diver = build(load([f"behaviour={behaviour}", f"behaviour.shape={shape}"]))
     law = diver.behaviour._laws["flight"]
     for amount, more in ((0.6, 1.1), (0.7, 1.1), (0.8, 1.1), (0.9, 1.1), (1.0, 1.0)):
-        inertia = inertia_by_sum(diver.model, law.pose(amount, law._usual))
+        inertia = inertia_by_sum(diver.model, law.tucking.pose(amount, law._usual))
         others = np.linalg.eigvalsh(inertia[np.ix_([0, 2], [0, 2])])
         assert np.abs(inertia[1, [0, 2]]).max() < 1e-6  # both sides are alike: left is a main axis
         assert inertia[1, 1] > more * others.max(), amount
@@ -98,7 +98,7 @@ def test_it_lands_at_its_attitude_over_a_range_of_momenta(turns, least, height, 
     rng, flights = np.random.default_rng(7), 4
     scenario = flier(turns)
     law = scenario.behaviour._laws["flight"]
-    most = min(3.0 * least, 0.93 * abs(law._target) / (1.7 * law._slowness.min()))
+    most = min(3.0 * least, 0.93 * abs(law._target) / (1.7 * law.tucking.slowness.min()))
     errors = []
     for momentum in np.geomspace(least, most, flights):
         landed = fly(flier(turns), momentum, height, up, rng.uniform(0.0, 0.4))
@@ -113,7 +113,7 @@ def test_the_time_to_the_landing_is_that_of_a_fall(dive):
     for up, height in ((2.5, 11.0), (-1.0, 6.0)):
         law = dive.behaviour._laws["flight"]
         data = mujoco.MjData(dive.model.mj)
-        spawn(dive.model, data, law.pose(1.0, law._usual), 0.0, height, up, np.zeros(3))
+        spawn(dive.model, data, law.tucking.pose(1.0, law._usual), 0.0, height, up, np.zeros(3))
         mujoco.mj_forward(dive.model.mj, data)
         told = law.time(up, height, law._usual)
         while data.subtree_com[1, 2] > law._usual.height:
@@ -130,10 +130,10 @@ def test_momentum_that_a_stage_plans_for_is_what_the_flight_needs():
     """What `momentum` says for an average tuck turns a rigid body of that shape as far in time."""
     scenario = flier(1.5)
     law = scenario.behaviour._laws["flight"]
-    assert law.mean_slowness(0.0, 0.0, 1.7) == pytest.approx(
+    assert law.tucking.mean_slowness(0.0, 0.0, 1.7) == pytest.approx(
         1.0 / Shapes(scenario.model).inertia(pose_of(scenario.model, LONG), LEFT)
     )
-    held, tight = law.mean_slowness(1.0, 1.0, 100.0), pose_of(scenario.model, TUCK)
+    held, tight = law.tucking.mean_slowness(1.0, 1.0, 100.0), pose_of(scenario.model, TUCK)
     assert held == pytest.approx(1.0 / Shapes(scenario.model).inertia(tight, LEFT), rel=0.03)
 
 

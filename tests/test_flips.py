@@ -89,7 +89,7 @@ def test_it_is_launched_with_the_momentum_that_it_needs(flip):
         log["trajectory/angular_momentum"][rows, 1] / log["trajectory/angular_velocity"][rows, 1]
     )
     law = scenario.behaviour._laws["flight"]
-    assert inertia.min() > 0.95 / law._slowness.max()
+    assert inertia.min() > 0.95 / law.tucking.slowness.max()
 
 
 # ---------------------------------------------------------------- what judges it
@@ -110,6 +110,10 @@ def a_log(pitch, contacts, speed=0.0):
         "trajectory/ground_height": np.zeros(n),
         "command/axes": np.tile(np.eye(3), (n, 1, 1)),
         "model/body": np.array([b"world", b"foot_l", b"head"]),
+        "model/joint": np.array([b"knee_l"]),
+        "model/torque_limit": np.array([200.0]),
+        "trajectory/qvel": np.zeros((n, 7)),
+        "trajectory/ctrl": np.zeros((n, 1)),
         "contacts/body": np.where(np.asarray(contacts)[:, None] > 0, 1, -1),
         "contacts/count": np.asarray(contacts),
     }

@@ -107,7 +107,7 @@ def test_a_fall_from_anywhere_is_looked_at_in_so_many_parts(law, monkeypatch):
 def test_a_flight_without_momentum_across_needs_no_arms():
     scenario = flier(1.5, HEAD_FIRST | {"levelling": LEVEL})
     episode, law = Episode(scenario), scenario.behaviour._laws["flight"]
-    pose = law.pose(-0.6, law._usual)
+    pose = law.tucking.pose(-0.6, law._usual)
     spawn(scenario.model, episode.data, pose, 0.2, 11.0, 2.5, np.array([0.0, 45.0, 0.0]))
     for moment in episode:
         level = episode.memory.aloft.level if episode.memory.aloft else Levelled()
@@ -155,10 +155,10 @@ def test_a_shape_midway_is_taken_at_its_amount():
     settings = HEAD_FIRST | {"midway": {"amount": 0.3, "pose": dish}}
     law = flier(1.5, settings).behaviour._laws["flight"]
     model, usual = law._model, law._usual
-    assert np.allclose(law.pose(0.3, usual), make_pose(model, dish, "dish"))
-    assert np.allclose(law.pose(1.0, usual), make_pose(model, TUCK, "tuck"))
-    assert np.allclose(law.pose(0.0, usual), usual.pose)
-    near = [law.pose(amount, usual) for amount in (0.2999, 0.3001)]
+    assert np.allclose(law.tucking.pose(0.3, usual), make_pose(model, dish, "dish"))
+    assert np.allclose(law.tucking.pose(1.0, usual), make_pose(model, TUCK, "tuck"))
+    assert np.allclose(law.tucking.pose(0.0, usual), usual.pose)
+    near = [law.tucking.pose(amount, usual) for amount in (0.2999, 0.3001)]
     assert np.abs(near[1] - near[0]).max() < 0.002
     with pytest.raises(InputError, match=r"its amount 1 is not between 0 and 1"):
         flier(1.5, HEAD_FIRST | {"midway": {"amount": 1.0, "pose": dish}})

@@ -7,12 +7,11 @@ tucks where it turns too slowly, and opens where it turns too fast, [AlBorno2014
 opens to the pose that it lands in.
 
 What is left to turn is theta_land - (theta + shape), where `shape` is the turn that the change
-of shape from here to the landing pose makes by itself. Shapes lie on one line: the amount is 1
-fully tucked, 0 in the landing pose and -1 stretched.
+of shape from here to the landing pose makes by itself. Shapes: see `rotctl.behaviours.tucking`.
 """
 
-from math import atan2, copysign, pi, radians, sqrt, tau
-from typing import NamedTuple, TypeVar
+from math import atan2, pi, radians, sqrt, tau
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -22,6 +21,7 @@ from rotctl.behaviours.flight_settings import TUCK, EntrySettings, FlightSetting
 from rotctl.behaviours.landing import Contact, Landing
 from rotctl.behaviours.levelling import Ahead, Levelled, Levelling
 from rotctl.behaviours.scene import Scene
+from rotctl.behaviours.tucking import Tucking, smooth
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.mechanics.bodies import ROOT_BODY, body_ids, is_character, lowest_and_highest
@@ -31,16 +31,9 @@ from rotctl.mechanics.state import State
 from rotctl.motion import make_pose
 from rotctl.rotations import Array, crossed, dot, quaternion_from_rotation_vector
 
-AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
-INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
-REMAINING = 1.0 - INSTANTS
-HALVINGS = 14  # of the amounts that are possible: 0.0001
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
 ROUNDING = 1e-6  # [m]
 LEAST_TIME = 1e-3  # [s] to the landing
-SETTLING = 4.0  # [periods] in which the amount comes near, so that it does not overshoot
-
-Share = TypeVar("Share", float, Array)
 
 
 class Aloft(NamedTuple):
@@ -91,15 +84,9 @@ class Flight:
             valid = instead(shape, (TUCK, *settings.shapes))
             raise InputError(f"behaviour.shape={shape}: no such shape; {valid}")
         self._settings, self._model, self._frame = settings, model, frame
-        self._axis = axis = frame.trunk_axis
+        self._axis = frame.trunk_axis
         self._target, self._sense = target + radians(settings.first), 1.0 if target >= 0.0 else -1.0
         self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
-        self._tuck = make_pose(model, tightest, f"{key}.{shape}")
-        self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
-        self._midway: tuple[float, Array] | None = None
-        if settings.midway:
-            by_way = make_pose(model, settings.midway.pose, f"{key}.midway.pose")
-            self._midway = settings.midway.amount, by_way
         self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
         if settings.entry:
             self._usual = self._entry(settings.entry, f"{key}.entry")
@@ -116,8 +103,8 @@ class Flight:
                 raise InputError(f"{key}.levelling: is of turns about left, and this one is not")
             aside = f"{key}.levelling"
             self._levelling = Levelling(level, model, self._shapes, settings.change, aside)
-        self._slowness = np.array(
-            [1.0 / self._shapes.inertia(self.pose(a, self._usual), axis) for a in AMOUNTS.tolist()]
+        self.tucking = Tucking(
+            settings, model, self._shapes, self._axis, self._usual, tightest, key, shape
         )
 
     def _entry(self, entry: EntrySettings, key: str) -> Contact:
@@ -159,7 +146,9 @@ class Flight:
         """
         leans = self._sense * self._usual.attitude if self._pitches else 0.0
         need = turns + leans - gone
-        return max(need, 0.0) / (time * self.mean_slowness(self._settings.tightest, 0.0, time))
+        return max(need, 0.0) / (
+            time * self.tucking.mean_slowness(self._settings.tightest, 0.0, time)
+        )
 
     def falls(self, up: float, over: float) -> float:
         """Time to a landing as usual [s]; see `time`."""
@@ -179,16 +168,6 @@ class Flight:
         height = self._usual.height
         down = sqrt(up * up + 2.0 * fall * max(over - height, 0.0))
         return self._feet.at(self._feet.offset(momentum, forward, down, height))
-
-    def pose(self, amount: float, contact: Contact) -> Array:
-        """The shape (nu,) of an amount of tuck [rad]."""
-        if self._midway and amount > 0.0:
-            at, pose = self._midway
-            if amount <= at:
-                return np.asarray(contact.pose + (amount / at) * (pose - contact.pose))
-            return np.asarray(pose + ((amount - at) / (1.0 - at)) * (self._tuck - pose))
-        end = self._tuck if amount >= 0.0 else self._stretch
-        return np.asarray(contact.pose + abs(amount) * (end - contact.pose))
 
     def time(self, up: float, over: float, contact: Contact) -> float:
         """To the landing [s]: 2 v / g, [AlBorno2014], and more where it lands lower.
@@ -217,7 +196,7 @@ class Flight:
         angles = scene.state.position[self._model.angles]
         shape = self._shapes.turn(angles, contact.pose, self._axis)
         goal = self._target + (contact.attitude if self._pitches else 0.0)
-        coasts = momentum * self._settings.coasting * float(self._slowness[len(AMOUNTS) // 2])
+        coasts = momentum * self._settings.coasting * self.tucking.landing_slowness
         return self._sense * (goal - self.turned(scene) - shape) - coasts
 
     def planned(self, scene: Scene, amount: float, forward: float, up: float, high: float) -> float:
@@ -233,29 +212,10 @@ class Flight:
         for _ in range(2):  # how it lands depends on its momentum, too
             contact = self.contact(momentum if self._pitches else 0.0, forward, up, over)
             time = self.time(up, over, contact)
-            slowness = self.mean_slowness(amount, 0.0, time)
+            slowness = self.tucking.mean_slowness(amount, 0.0, time)
             along = self._sense * momentum
             momentum = self._sense * self.left_to_turn(scene, contact, along) / (time * slowness)
         return momentum
-
-    def mean_slowness(self, amount: float, now: float, time: float) -> float:
-        """Mean of 1/I until the landing [1/(kg m2)].
-
-        Args:
-            amount: that it goes to, until it opens; now: the present one.
-            time: left [s].
-        """
-        return self._mean_slowness(amount, now, *self._plan(time))
-
-    def _plan(self, time: float) -> tuple[Array, Array]:
-        """What is held of an amount at `INSTANTS` of the time left [s], and gone of its change."""
-        settings = self._settings
-        held = _smooth(np.minimum(REMAINING * (time / settings.opening), 1.0))
-        return held, _smooth(np.minimum(INSTANTS * (time / settings.change), 1.0))
-
-    def _mean_slowness(self, amount: float, now: float, held: Array, gone: Array) -> float:
-        amounts = now + (amount * held - now) * gone
-        return float(np.interp(amounts, AMOUNTS, self._slowness).sum()) / len(INSTANTS)
 
     def begin(self, state: State) -> Aloft:
         """Memory at take-off: the pose as it is."""
@@ -276,22 +236,22 @@ class Flight:
         late = time < 0.5 * settings.change  # too late for another shape to turn much
         turning = self._sense * dot(momentum.angular, scene.turning)
         need = 0.0 if late else self.left_to_turn(scene, contact, turning) - before.level.missed
-        held = before.held if late else self._amount(need, turning, before.amount, time)
-        wanted = held * _smooth(min(time / settings.opening, 1.0))
-        amount, rate = self._towards(wanted, before, period)
+        held = before.held if late else self.tucking.amount(need, turning, before.amount, time)
+        wanted = held * self.tucking.held(time)
+        amount, rate = self.tucking.towards(wanted, before.amount, before.rate, period)
         gone = (scene.state.time - scene.begin.time) / settings.change
-        pose = self.pose(amount, contact)
+        pose = self.tucking.pose(amount, contact)
         if self._feet and self._feet.legs_reach:
-            opened = 1.0 - _smooth(min(time / settings.opening, 1.0))
-            turns = turning * time * self.mean_slowness(held, before.amount, time)
+            opened = 1.0 - self.tucking.held(time)
+            turns = turning * time * self.tucking.mean_slowness(held, before.amount, time)
             missing = self.left_to_turn(scene, contact, turning) - turns
             pose = self._feet.placed(pose, self._sense * opened * missing)
-        pose += (1.0 - _smooth(min(gone, 1.0))) * (before.first - pose)
+        pose += (1.0 - smooth(min(gone, 1.0))) * (before.first - pose)
         now = Aloft(amount, rate, held, before.first, pose, pose, before.level)
         if self._levelling:
             ahead_of_it = self._ahead(scene, contact, now, time, gone)
             level = self._levelling.advance(before.level, ahead_of_it, period)
-            pose = pose + _smooth(min(gone, 1.0)) * self._levelling.offset(level.amount)
+            pose = pose + smooth(min(gone, 1.0)) * self._levelling.offset(level.amount)
             now = now._replace(pose=pose, level=level)
         return now._replace(speed=(pose - before.pose) / period)
 
@@ -300,15 +260,15 @@ class Flight:
         settings, state = self._settings, scene.state
 
         def opened(after: float) -> float:
-            return _smooth(min(max(time - after, 0.0) / settings.opening, 1.0))
+            return self.tucking.held(max(time - after, 0.0))
 
         def changed(after: float) -> float:
-            return _smooth(min(after / settings.change, 1.0))
+            return smooth(min(after / settings.change, 1.0))
 
         def pose(after: float) -> Array:
             amount = now.amount + (now.held * opened(after) - now.amount) * changed(after)
-            shape = self.pose(amount, contact)
-            first = 1.0 - _smooth(min(gone + after / settings.change, 1.0))
+            shape = self.tucking.pose(amount, contact)
+            first = 1.0 - smooth(min(gone + after / settings.change, 1.0))
             return np.asarray(shape + first * (now.first - shape))
 
         return Ahead(
@@ -325,36 +285,7 @@ class Flight:
             self._sense,
         )
 
-    def _towards(self, wanted: float, now: Aloft, period: float) -> tuple[float, float]:
-        """Amount and its rate a period on: there soonest, with a unit's way in `change`."""
-        most, way = 4.0 / self._settings.change**2, wanted - now.amount
-        fastest = min(sqrt(2.0 * most * abs(way)), abs(way) / (SETTLING * period))
-        rate = now.rate + min(max(copysign(fastest, way) - now.rate, -most * period), most * period)
-        return now.amount + rate * period, rate
-
-    def _amount(self, need: float, momentum: float, now: float, time: float) -> float:
-        """Of tuck whose mean rate |H|/I over the time left makes the turn, by bisection."""
-        low, high = -self._settings.longest, self._settings.tightest
-        held, gone = self._plan(time)
-
-        def falls_short(amount: float) -> bool:
-            return momentum * self._mean_slowness(amount, now, held, gone) * time < need
-
-        if falls_short(high):
-            return high
-        if not falls_short(low):
-            return low
-        for _ in range(HALVINGS):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if falls_short(middle) else (low, middle)
-        return 0.5 * (low + high)
-
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """Twice the pose (2, nu) [rad], and its speed (2, nu) [rad/s]."""
         now = self.begin(scene.state) if aloft is None else aloft
         return np.array((now.pose, now.pose)), np.array((now.speed, now.speed))
-
-
-def _smooth(share: Share) -> Share:
-    """From 0 to 1 without a jump of speed."""
-    return share * share * (3.0 - 2.0 * share)
