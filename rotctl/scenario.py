@@ -14,15 +14,13 @@ import numpy as np
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.chain_settings import ChainSettings
-from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import similar as asking
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similar import similar
-from rotctl.errors import InputError
+from rotctl.fit import require_fit
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics import model as models
-from rotctl.mechanics.bodies import body_id
-from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Calm, Disturbance
+from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
@@ -30,11 +28,9 @@ from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
-from rotctl.metrics.judge import ChainCriteria, Criteria
 from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.schema import Config
-from rotctl.settings import ends
 from rotctl.simulation import aloft, falling
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
@@ -152,73 +148,6 @@ def _outside(model: Model, disturbance: Disturbance) -> Disturbance:
     """What acts from outside: the disturbance, and water where there is some."""
     pool = model.ground
     return Water(model.mj, pool, disturbance) if isinstance(pool, Basin) else disturbance
-
-
-def require_fit(config: Config, model: Model) -> None:
-    """See that the parts of a config fit together.
-
-    Raises:
-        InputError: criteria judge other motions or bodies, or what disturbs comes too late.
-    """
-    behaviour = config.behaviour
-    _require_judged(behaviour, config.criteria, model)
-    if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
-        raise InputError(
-            f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
-            f"physics={config.physics.name} give plant.predicted=false"
-        )
-    if isinstance(behaviour, RollingSettings):
-        for key, time in behaviour.last_told.items():
-            if time >= config.duration:
-                raise InputError(
-                    f"{key}: what it tells from {time:g} s on never comes, the run is over at "
-                    f"{config.duration:g} s"
-                )
-    outside = config.disturbance
-    if isinstance(outside, Calm):
-        return
-    if ends(outside.time)[0] >= config.duration:
-        raise InputError(
-            f"disturbance.time: the {outside.kind} begins at {ends(outside.time)[0]:g} s at the "
-            f"earliest, when the run of {config.duration:g} s is over"
-        )
-    if outside.changes_model and config.controller.sees_disturbance:
-        raise InputError(
-            f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
-            "none: control goes on with the model that it knows"
-        )
-
-
-def _require_judged(
-    behaviour: BehaviourSettings, criteria: Criteria, model: Model, key: str = "criteria"
-) -> None:
-    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
-    if isinstance(behaviour, ChainSettings):
-        wanted = ["chain"]
-    if isinstance(behaviour, RollingSettings):
-        wanted = ["rolling"] if behaviour.finish is None else ["finish"]
-    if criteria.kind not in wanted:
-        *first, last = wanted
-        choices = f"{', '.join(first)} or {last}" if first else last
-        raise InputError(
-            f"{key}={criteria.name} does not judge behaviour={behaviour.name}, "
-            f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
-            f"choose {key}={choices}"
-        )
-    if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
-        links, rules = len(behaviour.parts), len(criteria.parts)
-        if links != rules:
-            raise InputError(
-                f"criteria.parts: {rules} of them, and behaviour={behaviour.name} has {links} parts"
-            )
-        for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
-            _require_judged(part.behaviour, own, model, f"{key}.parts[{number}]")
-    stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))
-    for name in getattr(stands, "feet", ()):
-        body_id(model.mj, name, f"{key}.feet")
-    for group in getattr(criteria, "order", ()):
-        for name in group:
-            body_id(model.mj, name, f"{key}.order")
 
 
 def _stepper(physics: Physics, model: Model) -> Stepper:

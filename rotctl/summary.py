@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.fit import require_fit
 from rotctl.log import RunLog, TrajectoryBuffer
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
@@ -12,7 +13,7 @@ from rotctl.metrics import disturbed
 from rotctl.metrics.chain import Link
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.judge import judge
-from rotctl.scenario import Scenario, model_of, require_fit
+from rotctl.scenario import Scenario, model_of
 from rotctl.schema import Config
 
 Summary = dict[str, Any]

@@ -225,3 +225,14 @@ def test_two_rolls_out_of_a_stand():
         assert summary["parts_begun"] == 3
         rolled += summary["success"]
     assert rolled
+
+
+def test_a_schedule_of_a_part_comes_in_the_run():
+    part = "'forward_roll behaviour.pace.schedule=[[9,0.5]]'"
+    chain = load(["behaviour=chain", f"behaviour.parts=[stand,{part}]", "duration=9"])
+    with pytest.raises(InputError) as raised:
+        build(chain)
+    assert str(raised.value) == (
+        "behaviour.parts[2].behaviour.pace.schedule: what it tells from 9 s on never comes, the "
+        "run is over at 9 s"
+    )

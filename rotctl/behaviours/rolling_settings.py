@@ -114,10 +114,10 @@ class RollingSettings:
 
     @property
     def last_told(self) -> dict[str, float]:
-        """When a schedule changes a command for the last time [s], by its key."""
-        told = {"pace": self.pace, "course": self.course}
-        found = {key: getattr(part, "schedule", ()) for key, part in told.items()}
-        return {f"behaviour.{key}.schedule": all_[-1][0] for key, all_ in found.items() if all_}
+        """When a schedule changes a command for the last time [s], by its key here."""
+        parts = {"pace": self.pace, "course": self.course}
+        found = {key: getattr(part, "schedule", ()) for key, part in parts.items()}
+        return {f"{key}.schedule": told[-1][0] for key, told in found.items() if told}
 
     @property
     def kinds(self) -> dict[str, str]:

@@ -1,0 +1,88 @@
+"""Parts of a config that are each valid, and whether they make a run together."""
+
+from rotctl.behaviours import BehaviourSettings
+from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.errors import InputError
+from rotctl.mechanics.bodies import body_id
+from rotctl.mechanics.disturbance import Calm
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.physics import LockstepPhysics
+from rotctl.metrics.judge import ChainCriteria, Criteria
+from rotctl.schema import Config
+from rotctl.settings import ends
+
+
+def require_fit(config: Config, model: Model) -> None:
+    """See that the parts of a config fit together.
+
+    Raises:
+        InputError: criteria judge other motions or bodies, or what disturbs comes too late.
+    """
+    behaviour = config.behaviour
+    _require_judged(behaviour, config.criteria, model)
+    if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
+        raise InputError(
+            f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
+            f"physics={config.physics.name} give plant.predicted=false"
+        )
+    _require_in_time(behaviour, config.duration)
+    outside = config.disturbance
+    if isinstance(outside, Calm):
+        return
+    if ends(outside.time)[0] >= config.duration:
+        raise InputError(
+            f"disturbance.time: the {outside.kind} begins at {ends(outside.time)[0]:g} s at the "
+            f"earliest, when the run of {config.duration:g} s is over"
+        )
+    if outside.changes_model and config.controller.sees_disturbance:
+        raise InputError(
+            f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
+            "none: control goes on with the model that it knows"
+        )
+
+
+def _require_judged(
+    behaviour: BehaviourSettings, criteria: Criteria, model: Model, key: str = "criteria"
+) -> None:
+    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
+    if isinstance(behaviour, ChainSettings):
+        wanted = ["chain"]
+    if isinstance(behaviour, RollingSettings):
+        wanted = ["rolling"] if behaviour.finish is None else ["finish"]
+    if criteria.kind not in wanted:
+        *first, last = wanted
+        choices = f"{', '.join(first)} or {last}" if first else last
+        raise InputError(
+            f"{key}={criteria.name} does not judge behaviour={behaviour.name}, "
+            f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
+            f"choose {key}={choices}"
+        )
+    if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
+        links, rules = len(behaviour.parts), len(criteria.parts)
+        if links != rules:
+            raise InputError(
+                f"criteria.parts: {rules} of them, and behaviour={behaviour.name} has {links} parts"
+            )
+        for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
+            _require_judged(part.behaviour, own, model, f"{key}.parts[{number}]")
+    stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))
+    for name in getattr(stands, "feet", ()):
+        body_id(model.mj, name, f"{key}.feet")
+    for group in getattr(criteria, "order", ()):
+        for name in group:
+            body_id(model.mj, name, f"{key}.order")
+
+
+def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:
+    """What a schedule tells comes before a run of that duration [s] is over."""
+    if isinstance(behaviour, ChainSettings):
+        for number, part in enumerate(behaviour.parts):
+            _require_in_time(part.behaviour, duration, f"{key}.parts[{number}].behaviour")
+    if isinstance(behaviour, RollingSettings):
+        for schedule, time in behaviour.last_told.items():
+            if time >= duration:
+                raise InputError(
+                    f"{key}.{schedule}: what it tells from {time:g} s on never comes, the run is "
+                    f"over at {duration:g} s"
+                )
