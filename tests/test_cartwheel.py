@@ -184,19 +184,40 @@ def test_carried_along_the_way_and_balanced_across(standing):
     assert row["target"][2] == pytest.approx(0.9, abs=2e-3)  # upright still
 
 
+def test_pressure_from_beyond_the_feet_stops_what_they_cannot(standing):
+    """A capture point beyond the toes: some of what is missing, or all of it and no more."""
+    momentum, across = standing.state.momentum, ways(standing).across
+    fast = momentum._replace(com_velocity=momentum.com_velocity + 1.0 * across)
+    scene = standing._replace(state=standing.state._replace(momentum=fast))
+    found = {}
+    for throw in (0.0, 0.05, 10.0):
+        row = np.zeros(1, TASK)[0]
+        aim = Carry("carry", ("foot",), (), 1.5, 4.0, 1.0, 0.0, (0.9, 0.7), (0.0, 90.0), throw)
+        aim.fill(row, "linear", scene)
+        found[throw] = row["acceleration"] @ across
+    square = 9.81 / momentum.com[2]
+    assert found[0.05] - found[0.0] == pytest.approx(-0.05 * square, rel=1e-6)
+    mj = scene.model.mj
+    feet = [mj.body(name).id for name in ("foot_l", "foot_r")]
+    middle = np.array([*support.middle(support.ends(scene.model, scene.state.data, feet)), 0.0])
+    off = (momentum.com - middle) @ across
+    out = off + fast.com_velocity @ across / np.sqrt(square)
+    assert found[10.0] == pytest.approx(square * (off - 2.0 * out), rel=1e-6)
+
+
 def test_a_limb_is_lowered_over_the_turn(standing):
     """Along the way beyond the foot, across it where the body comes to rest; slides, stage 2."""
     scene = standing._replace(turned=np.radians(-45.0))
     body = scene.model.mj.body("forearm_l").id
     row = np.zeros(1, TASK)[0]
     row["body"], row["weight"] = body, 1.0
-    Place("place", "foot_l", 0.8, (30.0, 60.0), 0.03).fill(row, "point", scene)
+    Place("place", "foot_l", 0.8, (30.0, 60.0), 0.03, 0.04).fill(row, "point", scene)
     along, across = ways(scene)
     foot = scene.state.data.xpos[scene.model.mj.body("foot_l").id]
     assert (row["target"][:3] - foot) @ along == pytest.approx(0.8)
     momentum = scene.state.momentum
     rests = momentum.com + momentum.com_velocity / np.sqrt(9.81 / momentum.com[2])
-    assert (row["target"][:3] - rests) @ across == pytest.approx(0.0, abs=1e-9)
+    assert (row["target"][:3] - rests) @ across == pytest.approx(0.04, abs=1e-9)
     high = scene.begin.place[body][2]
     assert row["target"][2] == pytest.approx(0.5 * (high + 0.03))
 

@@ -91,8 +91,10 @@ UNITS: Units = {
     Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
     Poise: all_of(length, "margin") | all_of(rate, "rate"),
     Shift: all_of(length, "most", "ahead") | all_of(rate, "rate"),
-    Carry: all_of(length, "margin", "heights") | all_of(speed, "speed") | all_of(rate, "eager"),
-    Place: all_of(length, "distance", "height"),
+    Carry: all_of(length, "margin", "heights", "throw")
+    | all_of(speed, "speed")
+    | all_of(rate, "eager"),
+    Place: all_of(length, "distance", "height", "ahead"),
     Stride: all_of(length, "distance", "lift", "height") | all_of(time, "time"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),

@@ -65,7 +65,9 @@ def rests(scene: Scene, across: Array) -> float:
 class Carry:
     """Take the centre of mass along the way, at a speed and a height: linear.
 
-    Across the way the capture point is kept over what stands.
+    Across the way the capture point is kept over what stands. Two hands are a line, and one a
+    point: pressure there cannot follow it, and a body thrown about the way acts like pressure
+    from beyond them.
 
     Attributes:
         bodies: that may stand; of those the ones that do, with all of their length, or
@@ -76,6 +78,7 @@ class Carry:
         margin: inside the support that it keeps there [m].
         heights: of the centre of mass over the ground [m], from the one to the other while it turns
         angles: from here to there [deg], in the sense of the target.
+        throw: furthest beyond what stands that pressure is wanted, across the way [m].
     """
 
     law: Literal["carry"]
@@ -87,6 +90,7 @@ class Carry:
     margin: NonNegative
     heights: tuple[Positive, Positive]
     angles: tuple[Finite, Finite]
+    throw: NonNegative = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -100,12 +104,24 @@ class Carry:
         rate = support.pendulum_rate(model, state)
         base = Base(support.hull(ends), support.middle(ends), rate)
         aside = captured(scene, base, across, self.gain, self.margin)
+        if self.throw:
+            aside += self._thrown(scene, base, across, aside)
         ahead = self.eager * (self.speed - dot(state.momentum.com_velocity, along))
         task["acceleration"] = ahead * along + aside * across
         low, high = self.heights
         height = low + share_of(scene, self.angles) * (high - low)
         x, y, _ = state.momentum.com.tolist()
         task["target"][:3] = [x, y, scene.floor + height]
+
+    def _thrown(self, scene: Scene, base: Base, across: Array, aside: float) -> float:
+        """What pressure from beyond what stands would add to an acceleration across [m/s2]."""
+        x, y = base.middle
+        momentum, square = scene.state.momentum, base.rate * base.rate
+        off = dot(momentum.com - np.array([x, y, 0.0]), across)
+        out = off + dot(momentum.com_velocity, across) / base.rate
+        missing = square * (off - (1.0 + self.gain) * out) - aside
+        most = square * self.throw
+        return min(max(missing, -most), most)
 
     def _ends(self, scene: Scene) -> list[support.Point]:
         """What stands, seen from above [m]."""
@@ -133,6 +149,7 @@ class Place:
         distance: along the way from there [m].
         angles: turned, between which it goes up or down there [deg], in the target's sense.
         height: of the point over the ground in the end [m]; under it, and it comes down for sure.
+        ahead: of where the body comes to rest, across the way [m].
     """
 
     law: Literal["place"]
@@ -140,6 +157,7 @@ class Place:
     distance: Finite
     angles: tuple[Finite, Finite]
     height: Finite
+    ahead: Finite = 0.0
 
     def check(self, model: Model) -> None:
         """Raises InputError for a body that is not there."""
@@ -150,7 +168,7 @@ class Place:
         body, state, data = int(task["body"]), scene.state, scene.state.data
         along, across = ways(scene)
         from_here = data.xpos[body_id(scene.model.mj, self.beyond, KEY)]
-        aside = rests(scene, across)
+        aside = rests(scene, across) + self.ahead
         goal = (dot(from_here, along) + self.distance) * along + aside * across
         x, y = float(goal[0]), float(goal[1])
         first = float(scene.begin.place[body][2])
