@@ -142,9 +142,9 @@ def test_overrides_and_options_may_be_mixed(cli, made):
     [
         ([*RUN, "controller.solver=foo"], "rotctl: controller.solver='foo' is unknown; valid: "
          "boxqp, osqp, qpsolvers:<name> (for example qpsolvers:daqp)"),
-        ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: falling, long, poised, '
-         "prone, raised, rest, running, side, standing, still, supine, symmetric, tucked, "
-         "tucked_back"),
+        ([*RUN, "start=foo"], 'rotctl: start="foo": no such choice; valid: aloft, armstand, '
+         "falling, long, poised, prone, raised, rest, running, side, standing, still, supine, "
+         "symmetric, tucked, tucked_back"),
         ([*RUN, "seed=1,2"], "rotctl: override 'seed=1,2': run takes one value for seed; "
          "rotctl sweep takes many"),
         ([*RUN, "seed"], "rotctl: override 'seed' has no '='; write key=value, such as seed=3"),

@@ -29,8 +29,8 @@ NOT_READ = (
 )
 
 STARTS = (
-    "falling, long, poised, prone, raised, rest, running, side, standing, still, supine, "
-    "symmetric, tucked, tucked_back"
+    "aloft, armstand, falling, long, poised, prone, raised, rest, running, side, standing, still, "
+    "supine, symmetric, tucked, tucked_back"
 )
 
 
