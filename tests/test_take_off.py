@@ -71,7 +71,7 @@ def test_faster_is_faster():
             "behaviour.take_off=4: legs give no more than at 3.7 m/s; give that or less",
         ),
         ("back_flip", 0.0, "behaviour.take_off=0.0: must be greater than 0"),
-        ("stand", 3.0, "behaviour: take_off=3: nothing launches here"),
+        ("stand", 3.0, "behaviour: take_off=3: no stage ends as it is launched"),
     ],
 )
 def test_speeds_that_are_none_are_refused(behaviour, speed, said):
@@ -84,3 +84,15 @@ def test_speeds_that_are_none_are_refused(behaviour, speed, said):
 def test_what_is_told_to_be_possible_is():
     for behaviour, speed in (("back_flip", 1.9), ("front_flip", 2.3)):
         build(load([f"behaviour={behaviour}", f"behaviour.take_off={speed}"]))
+
+
+def test_no_speed_is_told_that_would_be_refused():
+    with pytest.raises(InputError, match="gives at most 50; no turn is possible here$"):
+        far = ["behaviour.target_excursion=720", "behaviour.take_off=1"]
+        build(load(["behaviour=front_flip", *far]))
+
+
+def test_a_launch_without_a_measured_most_takes_no_speed():
+    with pytest.raises(InputError) as caught:
+        build(load(["behaviour=dive_forward", "+behaviour.take_off=9"]))
+    assert str(caught.value) == "behaviour.take_off=9: this launch has its own speed alone"

@@ -75,10 +75,11 @@ def _check_turn(flight: Flight, target: float) -> None:
 
 def _check_speed(launch: Launch, take_off: float | None) -> None:
     """Raises InputError for a speed that legs do not give."""
-    if take_off and launch.most and take_off > launch.most:
+    if take_off and not launch.most:
+        raise InputError(f"{SPEED}={take_off:g}: this launch has its own speed alone")
+    if take_off and take_off > launch.most:
         raise InputError(
-            f"{SPEED}={take_off:g}: legs give no more than at {launch.most:g} m/s; "
-            f"give that or less"
+            f"{SPEED}={take_off:g}: legs give no more than at {launch.most:g} m/s; give that or less"
         )
 
 
@@ -100,7 +101,7 @@ def _check_momentum(
         return
     fewer = f"{degrees(copysign(turns[-1], target)):g} is possible" if turns[-1] > 0.0 else ""
     if take_off and not fewer:
-        for speed in FASTER:
+        for speed in (speed for speed in FASTER if speed <= launch.most):
             longer = _time(model, axes, launch, flight, launch.up * speed / take_off)
             if flight.least_momentum(turns[0], GONE, longer) <= whirl.most:
                 fewer = f"with {SPEED}={speed:g} it is possible"

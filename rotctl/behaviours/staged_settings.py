@@ -55,7 +55,7 @@ class StagedSettings:
         if self.shape != TUCK and not any(stage.flight for stage in self.stages):
             raise ValueError(f"shape={self.shape}: nothing flies here")
         if self.take_off and not any(isinstance(s.until, Launched) for s in self.stages):
-            raise ValueError(f"take_off={self.take_off:g}: nothing launches here")
+            raise ValueError(f"take_off={self.take_off:g}: no stage ends as it is launched")
         names = [stage.name for stage in self.stages]
         for stage in self.stages:
             if stage.otherwise and stage.otherwise.stage not in names:

@@ -128,6 +128,11 @@ def draw(
             )
         return _falling(settings, settings.falling, model, start, generator)
     if settings.aloft:
+        if roll_about != "left":
+            raise InputError(
+                f"start={settings.name} turns about the left axis, and "
+                f"behaviour.roll_about={roll_about}"
+            )
         return _aloft(settings, settings.aloft, model, start, generator)
     if not settings.postures:
         return start
