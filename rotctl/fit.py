@@ -2,12 +2,15 @@
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.behaviours.placing import Watch
 from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
+from rotctl.metrics.dive import WATCHED, DiveCriteria
 from rotctl.metrics.judge import ChainCriteria, Criteria
 from rotctl.schema import Config
 from rotctl.settings import ends
@@ -56,7 +59,7 @@ def _require_judged(
         raise InputError(
             f"{key}={criteria.name} does not judge behaviour={behaviour.name}, "
             f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
-            f"choose {key}={choices}"
+            f"choose criteria of kind {choices}"
         )
     if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
         links, rules = len(behaviour.parts), len(criteria.parts)
@@ -66,12 +69,27 @@ def _require_judged(
             )
         for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
             _require_judged(part.behaviour, own, model, f"{key}.parts[{number}]")
+    if isinstance(criteria, DiveCriteria):
+        _require_watched(behaviour, criteria, key)
     stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))
     for name in getattr(stands, "feet", ()):
         body_id(model.mj, name, f"{key}.feet")
     for group in getattr(criteria, "order", ()):
         for name in group:
             body_id(model.mj, name, f"{key}.order")
+
+
+def _require_watched(behaviour: BehaviourSettings, criteria: DiveCriteria, key: str) -> None:
+    """What an entry is judged by are points that the behaviour watches."""
+    tasks = behaviour.tasks if isinstance(behaviour, StagedSettings) else {}
+    lacking = [
+        name for name in WATCHED if name not in tasks or not isinstance(tasks[name].aim, Watch)
+    ]
+    if lacking:
+        raise InputError(
+            f"{key}={criteria.name} judges a dive by tasks of the law watch, and "
+            f"behaviour={behaviour.name} has none of the name {' nor '.join(lacking)}"
+        )
 
 
 def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:

@@ -176,7 +176,7 @@ def test_each_part_is_judged_by_itself(stands):
     config, log, summary = stands
     assert summary["failure_reason"].startswith("part 1 of 3, stand: ")
     assert summary["parts_succeeded"] == 1  # the last one stands for more than two seconds
-    parts = spans(log, links_of(config))
+    parts = spans(log, [link.stages for link in links_of(config)])
     for part, words in zip(parts, summary["parts"].split("; "), strict=True):
         assert words.startswith(f"stand {log['trajectory/time'][part.rows[0]]:.2f}: ")
         assert part["trajectory/time"][0] == 0.0

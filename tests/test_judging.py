@@ -11,10 +11,11 @@ from sweep_cli import logs
 from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.listing import choices
 from rotctl.log import RunLog
 from rotctl.metrics import judge as metrics
 from rotctl.results.index import read
-from rotctl.run import run
+from rotctl.run import make, run
 from rotctl.scenario import model_of, run_id
 from rotctl.sweep.judging import criteria, judge
 from rotctl.sweep.plan import planned
@@ -194,3 +195,27 @@ def test_a_file_that_is_none_of_metrics(made, tmp_path, capsys, text):
 def test_a_folder_that_is_not_there_is_told_first(tmp_path, capsys):
     assert main(["judge", str(tmp_path / "none")]) == 2
     assert capsys.readouterr().err == f"rotctl: {tmp_path / 'none'}: no such folder\n"
+
+
+@pytest.mark.parametrize("behaviour", ["back_flip", "dive_forward", "get_up", "forward_roll"])
+def test_all_criteria_judge_a_short_run_or_refuse_it(behaviour):
+    """A dive's look at points that a flip does not watch, say."""
+    said, judged = [], []
+    for name in choices("criteria"):
+        config = load([f"behaviour={behaviour}", f"criteria={name}", "duration=0.1"])
+        try:
+            judged.append(make(config).summary["criteria"])
+        except InputError as error:
+            said.append(f"criteria={name} " in str(error))
+    assert judged
+    assert said
+    assert all(said)
+
+
+def test_a_flip_is_no_dive():
+    with pytest.raises(InputError) as caught:
+        make(load(["behaviour=back_flip", "criteria=dive", "duration=0.1"]))
+    assert str(caught.value) == (
+        "criteria=dive judges a dive by tasks of the law watch, and behaviour=back_flip has none "
+        "of the name hand nor foot nor head nor pelvis"
+    )

@@ -225,7 +225,7 @@ def test_a_contradicting_pair_is_met_in_its_master():
             ["+finish=stand", "criteria=rolling"],
             "does not judge behaviour=forward_roll, a behaviour",
         ),
-        (["criteria=finish"], "choose criteria=rolling"),
+        (["criteria=finish"], "choose criteria of kind rolling"),
     ],
 )
 def test_one_line_for_what_does_not_fit(overrides, said):

@@ -98,6 +98,21 @@ def test_a_dive_from_the_hands_is_shown_from_when_the_handstand_is_left():
     assert seconds_of(log) == [(0.5, 2.0), (2.0, 3.1)]
 
 
+def test_of_a_chain_each_part_is_shown():
+    """A flight, a stand, a flight: each as by itself, the stand by one look."""
+    log = log_of(15.0, stages=(1.0, 5.0, 9.0, 10.0), flies=(2.0, 3.0), moves=(1.8, 3.6))
+    again = slice(round(9.0 * RATE), round(14.0 * RATE))
+    for name in ("contacts/count", "trajectory/com_velocity"):
+        log[name][again] = log[name][: round(5.0 * RATE)]
+    found = parts(log, log["trajectory/time"], (2, 1, 2))
+    seconds = [(round(part.first / RATE, 2), round(part.last / RATE, 2)) for part in found]
+    flip = [(1.5, 2.0), (2.0, 3.0), (3.0, 4.1)]
+    later = [(first + 9.0, last + 9.0) for first, last in flip]
+    assert seconds == [*flip, (5.0, 8.98), *later]
+    shares = [sum(part.share for part in some) for some in (found[:3], found[3:4], found[4:])]
+    assert shares == pytest.approx([6.0, 1.0, 6.0])
+
+
 def test_an_older_log_tells_no_stages():
     log = log_of(6.0, moves=(0.0, 6.0))
     del log["command/stage"], log["disturbance/wrench"]

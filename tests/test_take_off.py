@@ -87,9 +87,9 @@ def test_what_is_told_to_be_possible_is():
 
 
 def test_no_speed_is_told_that_would_be_refused():
+    far = load(["behaviour=front_flip", "behaviour.target_excursion=720", "behaviour.take_off=1"])
     with pytest.raises(InputError, match="gives at most 50; no turn is possible here$"):
-        far = ["behaviour.target_excursion=720", "behaviour.take_off=1"]
-        build(load(["behaviour=front_flip", *far]))
+        build(far)
 
 
 def test_a_launch_without_a_measured_most_takes_no_speed():

@@ -79,7 +79,8 @@ def _check_speed(launch: Launch, take_off: float | None) -> None:
         raise InputError(f"{SPEED}={take_off:g}: this launch has its own speed alone")
     if take_off and take_off > launch.most:
         raise InputError(
-            f"{SPEED}={take_off:g}: legs give no more than at {launch.most:g} m/s; give that or less"
+            f"{SPEED}={take_off:g}: legs give no more than at {launch.most:g} m/s; "
+            "give that or less"
         )
 
 

@@ -60,10 +60,10 @@ class Span:
         return name in self.log
 
 
-def spans(log: Arrays, links: Sequence[Link]) -> list[Span]:
-    """The rows of each part that has begun, in their order."""
+def spans(log: Arrays, stages: Sequence[int]) -> list[Span]:
+    """The rows of each part that has begun, in their order; `stages` tells how many each has."""
     stage = np.asarray(log["command/stage"])
-    first = np.concatenate(([0], np.cumsum([link.stages for link in links]))).tolist()
+    first = np.concatenate(([0], np.cumsum(stages))).tolist()
     found = []
     for begin, end in zip(first, first[1:], strict=False):
         rows = np.flatnonzero((stage >= begin) & (stage < end))

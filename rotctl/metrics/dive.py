@@ -18,6 +18,7 @@ from rotctl.metrics.flip import HOP, longest_flight, turn
 from rotctl.settings import STRICT, Finite, Positive
 
 PLATFORM = 0.0  # [m] height of its top
+WATCHED = ("hand", "foot", "head", "pelvis")  # tasks whose points are told, on both sides
 NEAREST = 90.0  # [deg] off the target: beyond, another number of half revolutions is nearer
 COLUMNS = (
     Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),

@@ -172,7 +172,7 @@ def _chained(
     links: Sequence[Link],
 ) -> tuple[dict[str, Any], str]:
     """Columns of a chain, and why it is no success; empty if each of its parts is one."""
-    parts = chain.spans(log, links)
+    parts = chain.spans(log, [link.stages for link in links])
     reasons = []
     for part, own, link in zip(parts, criteria.parts, links, strict=False):
         first, end = part.rows

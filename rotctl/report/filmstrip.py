@@ -24,6 +24,7 @@ from rotctl.report.frame import (
     dot,
     draw,
     moments,
+    stages_of_parts,
     turns_done,
     typeface,
 )
@@ -122,7 +123,9 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     time = drawable(log, log["trajectory/qpos"])
     if start is not None or end is not None:
         return spread([Part(*window(time, start, end), 1.0)], frames)
-    found = parts(log, time) or [Part(*_two_turns(time, turns_done(log)[: len(time)]), 1.0)]
+    found = parts(log, time, stages_of_parts(log)) or [
+        Part(*_two_turns(time, turns_done(log)[: len(time)]), 1.0)
+    ]
     return spread(found, frames)
 
 

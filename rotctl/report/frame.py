@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 from rotctl.documents import from_yaml
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.metrics.columns import in_frame
+from rotctl.metrics.columns import Arrays, in_frame
 from rotctl.plain import NOTHING, find
 from rotctl.report.title import plain
 from rotctl.rotations import Array
@@ -42,7 +42,7 @@ class Moment:
     used: Array  # (k,)
 
 
-def turns_done(log: RunLog) -> Array:
+def turns_done(log: Arrays) -> Array:
     """Excursion about what the behaviour turns about, since the start of the run [rev]."""
     axis = in_frame(log, "trajectory/trunk_axis")[:1]
     about = int(np.abs(axis[0]).argmax()) if len(axis) else 1
@@ -88,6 +88,15 @@ def _notes(log: RunLog) -> list[str]:
 
 def stage_names(log: RunLog) -> list[str]:
     """Names of a behaviour's stages by their number in the log; empty if it does not say."""
+    return [name for names in _by_part(log) for name in names]
+
+
+def stages_of_parts(log: RunLog) -> list[int]:
+    """How many stages each part of a chain has; one part, if it is none."""
+    return [len(names) for names in _by_part(log)]
+
+
+def _by_part(log: RunLog) -> list[list[str]]:
     try:
         config = from_yaml("config", log.config_yaml)
     except InputError:
@@ -95,9 +104,8 @@ def stage_names(log: RunLog) -> list[str]:
     behaviour = find(config, ("behaviour",))
     parts = find(behaviour, ("parts",))
     if isinstance(parts, list):
-        every = [_stages(find(part, ("behaviour",))) or ["roll"] for part in parts]
-        return [name for names in every for name in names]
-    return _stages(behaviour)
+        return [_stages(find(part, ("behaviour",))) or ["roll"] for part in parts]
+    return [_stages(behaviour)]
 
 
 def _stages(behaviour: Any) -> list[str]:

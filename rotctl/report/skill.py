@@ -4,12 +4,13 @@ Rolls go on as they began, so that two revolutions show them. Everything else ha
 end of its own, and most of a run of some seconds comes before or after.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from rotctl.log import RunLog
-from rotctl.metrics.columns import floats
+from rotctl.metrics.chain import spans
+from rotctl.metrics.columns import Arrays, floats
 from rotctl.metrics.dive import entry
 from rotctl.metrics.flip import longest_flight
 from rotctl.report.frame import turns_done
@@ -25,6 +26,7 @@ SLOW_TURN = 0.3  # [rad/s] of the whole body
 QUICK = 0.3  # of the fastest of the centre of mass: from there on something happens
 PERIODS = (1e-3, 10.0)  # [s] of a control step; a stranger's log may say anything
 TURN = 1.0  # [rev] of a roll before it ends
+MOVES, STANDS = 6.0, 1.0  # shares of the parts of a chain
 
 
 class Part(NamedTuple):
@@ -35,12 +37,36 @@ class Part(NamedTuple):
     share: float
 
 
-def parts(log: RunLog, time: Array) -> list[Part]:
+def parts(log: Arrays, time: Array, stages: Sequence[int] = ()) -> list[Part]:
     """What to show of a run, in order; empty for a roll that goes on.
 
     Args:
         time: of the rows that can be drawn [s].
+        stages: how many each part of a chain has; of what is none they need not be told.
     """
+    return _of_a_chain(log, stages, len(time)) if len(stages) > 1 else _of_one(log, time)
+
+
+def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
+    """Of each part what it shows by itself, or a look at it, if it only stands."""
+    found = []
+    for span in spans(log, stages):
+        first, end = span.rows[0], min(span.rows[1], rows)
+        if end - first < 2:
+            continue
+        shown = _of_one(span, span["trajectory/time"][: end - first])
+        rolls = np.ptp(turns_done(span)[: end - first]) > TURN
+        share = MOVES if shown or rolls else STANDS
+        shown = shown or [Part(0, end - first - 1, 1.0)]
+        whole = sum(part.share for part in shown)
+        found += [
+            Part(first + part.first, first + part.last, part.share * share / whole)
+            for part in shown
+        ]
+    return found
+
+
+def _of_one(log: Arrays, time: Array) -> list[Part]:
     rows = len(time)
     period = float(np.clip((time[-1] - time[0]) / max(rows - 1, 1), *PERIODS)) if rows > 1 else 0.0
     staged = np.asarray(log["command/stage"])[:rows] if "command/stage" in log else np.zeros(rows)
@@ -66,7 +92,7 @@ def spread(chosen: list[Part], frames: int) -> list[int]:
     return list(dict.fromkeys(rows))
 
 
-def _flight(log: RunLog, off: int, down: int, period: float, rows: int) -> list[Part]:
+def _flight(log: Arrays, off: int, down: int, period: float, rows: int) -> list[Part]:
     """Before, in and after a flight; a dive's ends in the water."""
     steps = round(BEFORE / period)
     wet = entry(log)
@@ -78,7 +104,7 @@ def _flight(log: RunLog, off: int, down: int, period: float, rows: int) -> list[
     return [before, Part(off, down, 5.0), *([Part(down, last, 4.0)] if last > down else [])]
 
 
-def _before(log: RunLog, off: int, steps: int) -> Part:
+def _before(log: Arrays, off: int, steps: int) -> Part:
     """The last rows before a take-off; from the hands, all since the handstand was left."""
     first = max(off - steps, 0)
     if "trajectory/trunk_axes" in log and floats(log, "trajectory/trunk_axes")[first, 2, 2] < 0.0:
@@ -87,7 +113,7 @@ def _before(log: RunLog, off: int, steps: int) -> Part:
     return Part(first, off, 3.0)
 
 
-def _begin(log: RunLog, staged: Array, period: float) -> int | None:
+def _begin(log: Arrays, staged: Array, period: float) -> int | None:
     """Where a motion of stages begins, a fall, a push, the end of a roll; None if nothing does."""
     turns = np.abs(turns_done(log))
     if staged.any():
@@ -109,7 +135,7 @@ def _begin(log: RunLog, staged: Array, period: float) -> int | None:
     return max(begin - round(BEFORE / period), 0)
 
 
-def _still(log: RunLog, after: int, period: float, rows: int) -> int:
+def _still(log: Arrays, after: int, period: float, rows: int) -> int:
     """A moment after the row from which it is still for good; the last row, if it never is."""
     turning = np.sqrt((floats(log, "trajectory/angular_velocity")[:rows] ** 2).sum(axis=1))
     moving = (_speed(log)[:rows] > SLOW) | (turning > SLOW_TURN)
@@ -119,6 +145,6 @@ def _still(log: RunLog, after: int, period: float, rows: int) -> int:
     return min(still + round(AFTER / period), rows - 1)
 
 
-def _speed(log: RunLog) -> Array:
+def _speed(log: Arrays) -> Array:
     speed: Array = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
     return speed

@@ -13,7 +13,17 @@ from rotctl import files
 from rotctl.log import RunLog
 from rotctl.metrics.columns import heading
 from rotctl.report import encoder, gl, stored_model
-from rotctl.report.frame import INK, MOODS, PAPER, SOFT, Moment, draw, moments, typeface
+from rotctl.report.frame import (
+    INK,
+    MOODS,
+    PAPER,
+    SOFT,
+    Moment,
+    draw,
+    moments,
+    stages_of_parts,
+    typeface,
+)
 from rotctl.report.rows import at_rate, drawable, window
 from rotctl.report.skill import parts
 from rotctl.report.title import Title, title
@@ -71,7 +81,7 @@ def video(
 
 
 def _rows(log: RunLog, time: Array, start: float | None, end: float | None) -> list[int]:
-    shown = parts(log, time) if start is None and end is None else []
+    shown = parts(log, time, stages_of_parts(log)) if start is None and end is None else []
     if shown:
         start = max(float(time[shown[0].first]) - BESIDE, float(time[0]))
         end = min(float(time[shown[-1].last]) + BESIDE, float(time[-1]))

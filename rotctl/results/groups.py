@@ -25,6 +25,7 @@ IN_FILES_ONLY = {
     *(column.name for kind in (appearance, pace, peaks) for column in kind.COLUMNS),
 }
 Name = tuple[object, ...]  # of a group: the values of its keys
+LONGEST = 80  # letters of a value in a table of the command line; files have all of it
 QUARTILES = {"q25": 0.25, "median": 0.5, "q75": 0.75}
 
 
@@ -172,6 +173,7 @@ def _text(value: Any, form: str) -> str:
     if value is None or value != value:
         return "-"
     text = format(value, form) if isinstance(value, float) else str(value)
+    text = text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
     return text.replace("|", "\\|").replace("\n", " ")
 
 

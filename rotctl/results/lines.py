@@ -13,6 +13,7 @@ from rotctl.results.table import differing
 
 _SHOWN = ("behaviour", "seed", "duration", "run_id")  # in columns of their own
 MOST = 6  # config keys on a line
+LONGEST = 60  # letters of a value: a chain's parts in full are a page
 _NONE = "-"
 
 
@@ -76,7 +77,8 @@ def _values(run: StoredRun, keys: Sequence[str]) -> str:
 
 
 def _text(value: Any) -> str:
-    return value if isinstance(value, str) else json.dumps(value)
+    text = value if isinstance(value, str) else json.dumps(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 
 
 def _written(log: Path) -> str:
