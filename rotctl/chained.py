@@ -2,7 +2,7 @@
 
 They are composed before the config is checked, so that a run and its log hold the whole of it. A
 part brings its behaviour, its criteria, and, where the run's are others by name, its gains and how
-its excursion is measured.
+its excursion is measured. What was said of it stays beside it: parts of one name may differ.
 """
 
 import shlex
@@ -12,7 +12,7 @@ from typing import Any
 from rotctl.checked import brief
 from rotctl.errors import InputError
 
-KIND = "chain"
+KIND, SAID = "chain", "said"
 MOST = 20  # parts
 GAINS = ("supervisor", "thresholds", "contact", "pose", "tasks", "poses", "contacts")
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
@@ -82,11 +82,11 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
         raise InputError(f"{where}: {error}") from None
     if made["behaviour"].get("kind") == KIND:
         raise InputError(f"{where}={brief(said)}: is a chain; name its parts")
-    return made
+    return {**made, SAID: shlex.join([words[0].partition("=")[2], *words[1:]])}
 
 
 def _part(made: dict[str, Any], data: dict[str, Any]) -> dict[str, Any]:
-    part = {"behaviour": made["behaviour"]}
+    part = {"behaviour": made["behaviour"], SAID: made[SAID]}
     if made["controller"].get("name") != data["controller"].get("name"):
         part["gains"] = {key: made["controller"][key] for key in GAINS if key in made["controller"]}
     if made["excursion"].get("name") != data["excursion"].get("name"):

@@ -38,7 +38,7 @@ from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
 from rotctl.written import to_dict
 
-DESCRIPTIVE = ("description", "source", "colour", "found_for")
+DESCRIPTIVE = ("description", "source", "colour", "found_for", "said")
 
 
 @dataclass(frozen=True)

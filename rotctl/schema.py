@@ -26,7 +26,7 @@ from rotctl.settings import STRICT, Positive
 from rotctl.simulation.start import StartSettings
 from rotctl.written import to_dict
 
-PROSE = ("description", "source")  # may have several lines
+PROSE = ("description", "source", "said")  # may be long
 LONGEST_TEXT = 200
 LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
 

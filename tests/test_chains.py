@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from here import swept
 
 from rotctl.config import load
 from rotctl.control.similar import similar_gains
@@ -13,7 +14,9 @@ from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.chain import Link, spans
 from rotctl.metrics.judge import ChainCriteria, judge
 from rotctl.report.frame import stage_names
+from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at
+from rotctl.results.table import table
 from rotctl.run import in_memory, run
 from rotctl.scenario import build, run_id
 from rotctl.schema import check
@@ -74,11 +77,29 @@ def test_a_chain_out_of_a_log_is_the_same_run():
     assert run_id(again, build(again).known) == run_id(made, build(made).known)
 
 
-def test_a_table_names_the_parts():
-    """A column of a sweep over them has no room for more."""
-    data = to_dict(chain("stand", "back_flip"))
-    assert value_at(data, "behaviour.parts") == "stand, square, back_flip"
+def test_a_table_tells_what_was_said_of_the_parts():
+    data = to_dict(chain("stand", "behaviour=back_flip   behaviour.shape=tuck"))
+    assert value_at(data, "behaviour.parts") == "stand, square, back_flip behaviour.shape=tuck"
     assert list(value_at(data, "behaviour.rest.feet")) == ["foot_l", "foot_r"]
+    for part in data["behaviour"]["parts"]:
+        del part["said"]
+    assert value_at(data, "behaviour.parts") == "stand, square, back_flip"
+
+
+def test_parts_of_one_name_and_other_settings_are_two_groups(tmp_path):
+    parts = 'behaviour.parts=[stand],["stand behaviour.tasks.balance.aim.gain=1.0"]'
+    found = table(swept(tmp_path, "behaviour=chain", parts, "duration=0.1"))
+    rows = grouped(found).rows
+    other = "stand behaviour.tasks.balance.aim.gain=1.0"
+    assert dict(zip(rows["behaviour.parts"], rows["n"], strict=True)) == {"stand": 1, other: 1}
+
+
+def test_what_was_said_of_a_part_does_not_act():
+    alike = chain("stand"), chain("behaviour=stand")
+    assert alike[0] == alike[1]
+    other = replace(alike[0].behaviour.parts[0], said="other")
+    told = replace(alike[0], behaviour=replace(alike[0].behaviour, parts=(other,)))
+    assert run_id(told, build(told).known) == run_id(alike[0], build(told).known)
 
 
 @pytest.mark.parametrize(

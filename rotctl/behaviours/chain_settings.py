@@ -25,11 +25,13 @@ class PartSettings:
         behaviour: as it is by itself.
         gains: its own; the run's controller's, if it has none.
         excursion: how AE and the phase are measured; as the run measures them, if it does not say.
+        said: what it was composed of, for people; empty if that is not known.
     """
 
     behaviour: Annotated[RollingSettings | StagedSettings, Field(discriminator="kind")]
     gains: Gains | None = None
     excursion: ExcursionSettings | None = None
+    said: str = ""
 
     @property
     def stages(self) -> int:
