@@ -52,7 +52,7 @@ def readable(summary: dict[str, Any]) -> str:
         if "finish_commanded" in summary:
             measured.append(
                 f"  stands up    from {number('stands_from', '.1f')} s "
-                f"(commanded from {number('finish_commanded', '.1f')}), "
+                f"({_told(summary)}), "
                 f"{number('stands_at')} m high in the end"
             )
         if "disturbed_by" in summary:
@@ -80,6 +80,15 @@ def readable(summary: dict[str, Any]) -> str:
             f"  real time    x {number('real_time_factor', '.1f')}",
         ]
     )
+
+
+def _told(summary: dict[str, Any]) -> str:
+    """When a roll was told to end on its feet."""
+    turns, time = summary.get("revolutions_told"), summary.get("told_at")
+    if not isinstance(turns, int | float):
+        return f"commanded from {summary['finish_commanded']:.1f}"
+    at = f"at {time:.1f} s" if isinstance(time, int | float) else "which it never did"
+    return f"told to after {turns:.3g} rev, {at}"
 
 
 def _disturbed(summary: dict[str, Any]) -> str:

@@ -21,6 +21,7 @@ from rotctl.run import in_memory, run
 from rotctl.scenario import build, run_id
 from rotctl.schema import check
 from rotctl.summary import links_of, summarise
+from rotctl.wording import readable
 from rotctl.written import to_dict
 
 QUICK = ["behaviour=chain", "behaviour.rest.seconds=0.2", "controller=standing"]
@@ -234,7 +235,30 @@ def test_a_roll_is_told_by_its_revolutions():
     assert replace(counted, after=6.0).told(5.0, 9.0) is False
     asked = replace(finish.behaviour, finish=counted).commanded
     assert asked["revolutions_commanded"] == 2.0
+    assert asked["revolutions_told"] == pytest.approx(1.1)
     assert "revolutions_commanded" not in finish.behaviour.commanded
+
+
+def test_so_few_revolutions_count_nothing():
+    overrides = ["behaviour=forward_roll", "+finish=stand", "behaviour.finish.revolutions=0.9"]
+    with pytest.raises(InputError) as caught:
+        load(overrides)
+    assert str(caught.value) == (
+        "behaviour.finish: revolutions=0.9: must be more than ahead=0.9, or 0, which counts none"
+    )
+
+
+def test_a_roll_that_is_counted_is_seen_and_told():
+    """It is looked at as any other, and people read when it was told."""
+    counted = ["behaviour.finish.after=0", "behaviour.finish.revolutions=1", "duration=3"]
+    _, summary = simulated(load(["behaviour=forward_roll", "+finish=stand", "seed=2000", *counted]))
+    for name in ("head_share", "head_peak", "force_p99", "knees_apart", "limb_overlap"):
+        assert summary[name] is not None
+    assert 0.0 < summary["told_at"] < 1.0
+    at = f"{summary['told_at']:.1f}"
+    assert f"(told to after 0.1 rev, at {at} s)" in readable(summary)
+    never = readable({**summary, "told_at": None})
+    assert "(told to after 0.1 rev, which it never did)" in never
 
 
 def test_two_rolls_out_of_a_stand():

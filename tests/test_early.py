@@ -8,6 +8,7 @@ from rotctl.config import load
 from rotctl.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
+COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
 
 
 @pytest.mark.parametrize(
@@ -30,6 +31,14 @@ STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
             "1.20 s, 0.20 s after it was told to end: it still rolls",
         ),
         ([*STANDS, "duration=0.5"], "0.50 s, before it is told to end, at 1 s"),
+        (
+            [*COUNTED, "behaviour.finish.revolutions=3", "duration=1"],
+            r"1.00 s, before it is told to end, after 2.1 rev: it turned 0.\d\d rev",
+        ),
+        (
+            [*COUNTED, "behaviour.finish.revolutions=1", "duration=1"],
+            r"1.00 s, 0.\d\d s after it was told to end: it still rolls",
+        ),
     ],
 )
 def test_the_end_of_a_short_run_is_its_reason(overrides, reason):

@@ -5,7 +5,7 @@ import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
 from rotctl.config import load
-from rotctl.metrics.finish import FinishCriteria, judge, upright
+from rotctl.metrics.finish import FinishCriteria, judge, rolled, upright
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.scenario import build
 
@@ -71,6 +71,23 @@ def test_a_roll_that_stands_up():
 )
 def test_what_it_does_instead(changes, said):
     assert judge(log_of(**changes), FINISH, ASKED, PERIOD, 0.99)[1] == said
+
+
+def test_a_roll_that_is_counted():
+    """It is the roll until it stands up, and is told where it has turned so far."""
+    counted = ASKED | {"finish_commanded": 0.0, "revolutions_commanded": 4.0}
+    log = log_of(stands=540)
+    log["trajectory/phase"] = 2 * np.pi * 0.5 * np.minimum(log["trajectory/time"], PERIOD * TOLD)
+    asked = counted | {"revolutions_told": 3.125}
+    roll, told = rolled(log, asked)
+    assert len(roll["trajectory/time"]) == 540
+    assert told == pytest.approx(6.25)
+    columns, reason = judge(log, FINISH, asked, PERIOD, 0.99)
+    assert reason == ""
+    assert columns["told_at"] == told
+    assert rolled(log, counted | {"revolutions_told": 4.5}).told == np.inf
+    roll, told = rolled(log, ASKED)
+    assert (len(roll["trajectory/time"]), told) == (TOLD, 8.0)
 
 
 def test_what_never_began_has_no_numbers():

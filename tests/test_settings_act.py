@@ -116,7 +116,7 @@ CASES = {
             "behaviour.finish.after=0",
             "behaviour.finish.revolutions=2",
         ),
-        r"behaviour\.finish\.revolutions",
+        r"behaviour\.finish\.(revolutions|ahead)",
         seconds=1.5,
     ),
     "chain": Case(

@@ -100,7 +100,8 @@ class RollingSettings:
             asked = {kept: math.nan if self.pace.schedule else asked[kept]}
         if self.finish is None:
             return asked
-        counted = {"revolutions_commanded": self.finish.revolutions}
+        rolls, ahead = self.finish.revolutions, self.finish.ahead
+        counted = {"revolutions_commanded": rolls, "revolutions_told": rolls - ahead}
         asked = asked | {"finish_commanded": self.finish.after}
         return asked | counted if self.finish.revolutions else asked
 

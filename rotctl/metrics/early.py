@@ -1,5 +1,6 @@
 """A run that ends before it could do what it is asked: that is the reason, not what is missing."""
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -55,9 +56,12 @@ def _missing(
     if isinstance(criteria, OrientationCriteria):
         return _before_the_turn(log, criteria, columns, lasted)
     if isinstance(criteria, FinishCriteria):
-        told, begins = commanded["finish_commanded"], finish.begins(log) * period
-        if lasted <= told:
-            return f"before it is told to end, at {told:g} s"
+        soonest, begins = commanded["finish_commanded"], finish.begins(log) * period
+        if lasted <= soonest:
+            return f"before it is told to end, at {soonest:g} s"
+        told = finish.rolled(log, commanded).told
+        if told == math.inf:
+            return _before_it_is_told(criteria, commanded, columns, lasted)
         if begins < lasted:
             return _resting("it began to stand up", begins, lasted, criteria.stand.rest)
         waits = lasted - told  # for a squat, of which there is one in a revolution
@@ -72,6 +76,20 @@ def _missing(
     _, landed = longest_flight(log)
     resting = _resting("it landed", landed * period, lasted, criteria.landing.rest)
     return _before_the_end_of_a_flight(log, period) or resting
+
+
+def _before_it_is_told(
+    criteria: FinishCriteria,
+    commanded: Mapping[str, float],
+    columns: Mapping[str, float],
+    lasted: float,
+) -> str:
+    """Of a roll that is counted: it rolls, and had no time for so many."""
+    turns, turned = commanded["revolutions_told"], columns["revolutions"]
+    rolls = columns["longest_stall"] < criteria.roll.stall_time
+    if not rolls or lasted >= turns * criteria.roll.revolution_time:
+        return ""
+    return f"before it is told to end, after {turns:.3g} rev: it turned {turned:.2f} rev"
 
 
 def _before_the_turn(

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import mujoco
 import numpy as np
@@ -23,6 +23,9 @@ HALF = 0.5  # [rev] off the number that is wanted is another number
 
 COLUMNS = (
     Column("finish_commanded", "Told to end on its feet", "s"),
+    Column("revolutions_commanded", "Rolls that it is to make", "rev"),
+    Column("revolutions_told", "Told to end on its feet after", "rev"),
+    Column("told_at", "Was told so at", "s"),
     Column("stands_from", "Begins to stand up", "s"),
     Column("stands_at", "Height of the centre of mass in the end", "m"),
     Column("lean_end", "Largest lean of the trunk in the end", "deg"),
@@ -35,7 +38,7 @@ class FinishCriteria:
     """Limits of a roll that ends standing; see `conf/criteria/finish.yaml`.
 
     Attributes:
-        roll: of what is rolled before it is told to end.
+        roll: of what is rolled, see `Rolled`.
         stand: of its rest on the feet in the end.
         height: least of the centre of mass above the ground then, a share of where it is in the
             body that stands upright, all its angles zero [-].
@@ -66,9 +69,27 @@ class _Part:
         return name in self.log
 
 
-def rolled(log: Arrays, told: float) -> Arrays:
-    """What comes before it is told to end [s]."""
-    return _Part(log, slice(0, int(np.searchsorted(floats(log, "trajectory/time"), told))))
+class Rolled(NamedTuple):
+    """What of a run is the roll.
+
+    Attributes:
+        log: its rows: until it is told to end, or, of a roll that is counted, stands up.
+        told: when it is told to end [s]; infinite for one that is counted and was not.
+    """
+
+    log: Arrays
+    told: float
+
+
+def rolled(log: Arrays, commanded: Mapping[str, float]) -> Rolled:
+    """What of a run is the roll, by what was asked for; see `RollingSettings.commanded`."""
+    time, told = floats(log, "trajectory/time"), commanded["finish_commanded"]
+    if "revolutions_told" not in commanded:
+        return Rolled(_Part(log, slice(0, int(np.searchsorted(time, told)))), told)
+    turned = floats(log, "trajectory/phase") >= math.tau * commanded["revolutions_told"]
+    rows = np.flatnonzero((time >= told) & turned)
+    roll = _Part(log, slice(0, begins(log)))
+    return Rolled(roll, float(time[rows[0]]) if len(rows) else math.inf)
 
 
 def begins(log: Arrays) -> int:
@@ -111,7 +132,7 @@ def judge(
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
     counted = commanded.get("revolutions_commanded", 0.0)
-    part = _Part(log, slice(0, row)) if counted else rolled(log, commanded["finish_commanded"])
+    part, told = rolled(log, commanded)
     direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
     roll = rolling.measure(part, criteria.roll, direction, period, halts)
     rest = max(row, steps - round(criteria.stand.rest / period))
@@ -135,4 +156,4 @@ def judge(
         "lean_end": stood.lean_end,
         "speed_end": stood.speed_end,
     }
-    return columns | ended, reason
+    return columns | ended | ({"told_at": told} if counted else {}), reason

@@ -128,7 +128,7 @@ def judge(
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
             found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
-            rolling_log = finish.rolled(log, commanded["finish_commanded"])
+            rolling_log = finish.rolled(log, commanded).log
             settle = criteria.roll.settle
         else:
             rolled = rolling.measure(log, criteria, direction, period, halts)
