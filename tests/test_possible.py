@@ -114,3 +114,15 @@ def test_the_longer_the_shape_the_more_momentum_it_asks_for():
     turns = radians(540.0)
     assert 1.2 < pike.least_momentum(turns, GONE, 1.7) / tuck.least_momentum(turns, GONE, 1.7) < 3.0
     assert "180 is possible here" in refusal(*dive, "behaviour.shape=straight")
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "turn", "valid"),
+    [("cartwheel", 90, "-360 or 360"), ("front_aerial", -360, "360"), ("handstand", 360, "0")],
+)
+def test_a_motion_of_one_turn_is_no_other(behaviour, turn, valid):
+    with pytest.raises(InputError) as caught:
+        load([f"behaviour={behaviour}", f"behaviour.target_excursion={turn}"])
+    assert str(caught.value) == (
+        f"behaviour: target_excursion={turn}: {behaviour} is a motion of {valid} deg"
+    )

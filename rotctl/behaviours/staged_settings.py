@@ -15,7 +15,7 @@ from rotctl.control import ControllerSettings
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings import STRICT, Finite, Positive
+from rotctl.settings import SPARSE, STRICT, Finite, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -29,6 +29,7 @@ class StagedSettings:
         target_excursion: how far to turn [deg], about
         turn_about: left, or up, or forward; about the latter two stages are of a turn to the left,
             and mirrored for one to the right.
+        targets: that it can turn by [deg]; any, if it does not say.
         shape: in which it flies, if it does; see `rotctl.behaviours.flight`.
         take_off: upward speed at which it takes off, in place of the launch's own [m/s].
     """
@@ -43,6 +44,7 @@ class StagedSettings:
     turn_about: TurnAbout = "left"
     shape: str = TUCK
     take_off: Positive | None = None
+    targets: tuple[Finite, ...] | None = field(default=None, metadata=SPARSE)
     source: str = ""
     description: str = ""
 
@@ -50,6 +52,10 @@ class StagedSettings:
         if self.turn_about != "left" and self.roll_about != "left":
             about = self.turn_about
             raise ValueError(f"turn_about {about} needs roll_about left, not {self.roll_about}")
+        if self.targets and self.target_excursion not in self.targets:
+            valid = " or ".join(f"{each:g}" for each in self.targets)
+            given = f"target_excursion={self.target_excursion:g}"
+            raise ValueError(f"{given}: {self.name} is a motion of {valid} deg")
         if self.stages[0].poses is None:
             raise ValueError("the first stage must have poses: a run starts in them")
         if self.shape != TUCK and not any(stage.flight for stage in self.stages):
