@@ -200,6 +200,8 @@ def test_runs_are_listed_and_compared(here, cli):
     ]
     name = said.split()[0]
     assert cli("inspect", name)[1] == cli("inspect", f"runs/{name}")[1] != ""
+    same = "config: the same\n\nfigures: the same\n"
+    assert cli("diff", name, f"runs/{name}") == (0, same, "")
     here.joinpath(name).write_text("of the same name")
     assert cli("inspect", name)[2] == f"rotctl: {name}: not an HDF5 file\n"
     one, other = _folder(2000), _folder(2001)

@@ -27,15 +27,21 @@ def folder_name(text: str) -> Path:
     return Path(text)
 
 
+def run_folder(path: Path) -> Path:
+    """A path as it is; where nothing lies there, but a run of that id in `runs`, its folder."""
+    there = os.path.lexists(path) or not os.path.lexists(RUNS / path / LOG_NAME)
+    return path if there else RUNS / path
+
+
 def log_file(path: Path) -> Path:
     """The path of a log, which may be named by the folder of its run, or by its id in `runs`.
 
     Raises:
         InputError: it is a folder without a log.
     """
+    path = run_folder(path)
     if not os.path.isdir(path):
-        named = RUNS / path / LOG_NAME  # by its id, as `rotctl ls` shows it
-        return path if os.path.lexists(path) or not os.path.lexists(named) else named
+        return path
     if not os.path.lexists(path / LOG_NAME):
         raise InputError(
             f"{path}: is a folder without {LOG_NAME}; name a run, its folder or the log in it; "

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from rotctl.commands.arguments import RUNS, Commands, role_and_name
+from rotctl.commands.arguments import RUNS, Commands, role_and_name, run_folder
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -134,8 +134,9 @@ def diff(arguments: argparse.Namespace) -> int:
     """Compare runs or sweeps."""
     from rotctl.results.comparison import compared
 
-    for path in (arguments.one, arguments.other):
+    both = [run_folder(path) for path in (arguments.one, arguments.other)]
+    for path in both:
         if not path.exists():
             raise InputError(f"{path}: no such file or folder")
-    print(printable(compared(arguments.one, arguments.other)))
+    print(printable(compared(*both)))
     return 0

@@ -5,7 +5,13 @@ import sys
 from pathlib import Path
 
 from rotctl.bars import bar, bars, following
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name, name_and_text
+from rotctl.commands.arguments import (
+    OVERRIDES_HELP,
+    Commands,
+    folder_name,
+    name_and_text,
+    run_folder,
+)
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -134,8 +140,9 @@ def judge(arguments: argparse.Namespace) -> int:
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine
 
-    if not arguments.folder.exists():  # before what is missing besides
-        raise InputError(f"{arguments.folder}: no such folder")
+    folder = run_folder(arguments.folder)
+    if not folder.exists():  # before what is missing besides
+        raise InputError(f"{folder}: no such folder")
     texts: dict[str, str] = {}
     for name, text in arguments.metric:
         if name in texts:
@@ -147,12 +154,12 @@ def judge(arguments: argparse.Namespace) -> int:
     metrics = read_all(texts)
     wanted = criteria(arguments.overrides, none=bool(metrics))
     with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
-        found = judge(arguments.folder, wanted, engine, shown.update, metrics)
+        found = judge(folder, wanted, engine, shown.update, metrics)
     groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
     print(printable(markdown(groups)), end="\n\n")
     if arguments.overrides:
         print(f"by these criteria: {found.lost} no longer a success, {found.won} newly one")
-    path = arguments.folder / "judged.csv"
+    path = folder / "judged.csv"
     files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(path)
     for note in [*found.table.notes, *groups.notes]:
