@@ -11,10 +11,11 @@ from typing import Any
 
 from rotctl.checked import brief
 from rotctl.errors import InputError
+from rotctl.settings import MOST_PARTS
 
 KIND, SAID = "chain", "said"
-MOST = 20  # parts
 GAINS = ("supervisor", "thresholds", "contact", "pose", "tasks", "poses", "contacts")
+GROUPS = ("behaviour", "controller", "criteria", "excursion")  # that make a part
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
 Composing = Callable[[list[str]], dict[str, Any]]
 
@@ -32,16 +33,20 @@ def composed(data: dict[str, Any], compose: Composing) -> dict[str, Any]:
     behaviour = data.get("behaviour")
     if not isinstance(behaviour, dict) or behaviour.get("kind") != KIND:
         return data
-    said = behaviour.get("parts")
+    chain = {key: value for key, value in behaviour.items() if key != "between"}
+    said, between = chain.get("parts"), behaviour.get("between")
     if not isinstance(said, list) or not any(isinstance(part, str) for part in said):
-        return data
-    if len(said) > MOST:
-        raise InputError(f"behaviour.parts: has {len(said)} parts, valid: up to {MOST}")
-    between = behaviour.get("between")
+        if isinstance(said, list) and said and between is not None:
+            raise InputError(
+                f"behaviour.between={brief(between)}: goes between parts that are texts, and these "
+                "are in full; give null"
+            )
+        return {**data, "behaviour": chain}
+    _require_few(len(said), 0)
     made = [_made(f"behaviour.parts[{i}]", part, compose) for i, part in enumerate(said)]
     if between is not None:
         made = _joined(made, _made("behaviour.between", between, compose))
-    chain = {key: value for key, value in behaviour.items() if key != "between"}
+    _require_few(len(said), len(made) - len(said))
     data = {**data, "behaviour": {**chain, "parts": [_part(one, data) for one in made]}}
     criteria = data.get("criteria")
     if isinstance(criteria, dict) and criteria.get("kind") == KIND and not criteria.get("parts"):
@@ -49,13 +54,28 @@ def composed(data: dict[str, Any], compose: Composing) -> dict[str, Any]:
     return data
 
 
+def _require_few(said: int, between: int) -> None:
+    if said + between > MOST_PARTS:
+        more = f" and behaviour.between adds {between}" if between else ""
+        raise InputError(
+            f"behaviour.parts: has {said} parts{more}, valid: up to {MOST_PARTS} in all"
+        )
+
+
 def _joined(made: list[dict[str, Any]], between: dict[str, Any]) -> list[dict[str, Any]]:
     """The configs of the parts, one between any two, but after a part that says when it ends."""
     found = made[:1]
     for before, one in zip(made, made[1:], strict=False):
-        stages = before["behaviour"].get("stages") or [{}]
-        found += [one] if stages[-1].get("until") else [between, one]
+        found += [one] if _says_when(before["behaviour"]) else [between, one]
     return found
+
+
+def _says_when(behaviour: dict[str, Any]) -> bool:
+    """Whether its last stage, or that of a roll's finish, has a condition; not checked yet."""
+    finish = behaviour.get("finish")
+    stages = (finish if isinstance(finish, dict) else behaviour).get("stages")
+    last = stages[-1] if isinstance(stages, list) and stages else None
+    return isinstance(last, dict) and bool(last.get("until"))
 
 
 def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
@@ -80,6 +100,9 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
         made = compose(words)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
+    for group in GROUPS:
+        if not isinstance(made.get(group), dict):
+            raise InputError(f"{where}={brief(said)}: leaves no {group}, it must have one")
     if made["behaviour"].get("kind") == KIND:
         raise InputError(f"{where}={brief(said)}: is a chain; name its parts")
     return {**made, SAID: shlex.join([words[0].partition("=")[2], *words[1:]])}
@@ -87,8 +110,14 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
 
 def _part(made: dict[str, Any], data: dict[str, Any]) -> dict[str, Any]:
     part = {"behaviour": made["behaviour"], SAID: made[SAID]}
-    if made["controller"].get("name") != data["controller"].get("name"):
+    if made["controller"].get("name") != _name(data, "controller"):
         part["gains"] = {key: made["controller"][key] for key in GAINS if key in made["controller"]}
-    if made["excursion"].get("name") != data["excursion"].get("name"):
+    if made["excursion"].get("name") != _name(data, "excursion"):
         part["excursion"] = made["excursion"]
     return part
+
+
+def _name(data: dict[str, Any], group: str) -> Any:
+    """Of a group's choice; None without one, which the check tells."""
+    chosen = data.get(group)
+    return chosen.get("name") if isinstance(chosen, dict) else None

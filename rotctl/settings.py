@@ -8,6 +8,7 @@ STRICT = ConfigDict(defer_build=True, extra="forbid")
 # Of a field that is left out of plain data where it has no value: what a joint may have, say, and
 # most have not.
 SPARSE = {"sparse": True}
+MOST_PARTS = 20  # of a chain of behaviours
 
 
 def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from here import swept
 
+from rotctl.chained import composed
 from rotctl.config import load
 from rotctl.control.similar import similar_gains
 from rotctl.errors import InputError
@@ -71,6 +72,24 @@ def test_nothing_goes_between_where_a_part_says_when_it_ends():
     assert len(plain.behaviour.parts) == 3
 
 
+def test_nothing_goes_between_where_a_finish_says_when_it_ends():
+    """The last stage of a roll's finish is the last one of the part."""
+    until = {"kind": "after", "seconds": 1.0}
+
+    def compose(words):
+        stages = (
+            [{}, {"until": until}] if words[0] == "behaviour=counted" else [{"until": until}, {}]
+        )
+        behaviour = {"name": words[0], "kind": "rolling", "finish": {"stages": stages}}
+        return {"behaviour": behaviour, "controller": {}, "criteria": {}, "excursion": {}}
+
+    data = {
+        "behaviour": {"kind": "chain", "parts": ["counted", "roll", "stand"], "between": "rest"}
+    }
+    found = composed(data, compose)["behaviour"]
+    assert [part["said"] for part in found["parts"]] == ["counted", "roll", "rest", "stand"]
+
+
 def test_a_chain_out_of_a_log_is_the_same_run():
     made = chain("stand", "back_flip")
     again = check(to_dict(made))
@@ -117,7 +136,17 @@ def test_what_was_said_of_a_part_does_not_act():
         (["stand 'x"], "behaviour.parts[0]=\"stand 'x\": No closing quotation"),
         (["forward_roll", "stand"], "behaviour: parts[0]: forward_roll rolls on, and others follow "
          "it; 'behaviour=NAME +finish=stand' comes to an end"),
-        (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20"),
+        (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20 in all"),
+        (["stand"] * 11, "behaviour.parts: has 11 parts and behaviour.between adds 10, valid: up "
+         "to 20 in all"),
+        (["back_flip ~criteria"], 'behaviour.parts[0]="back_flip ~criteria": leaves no criteria, '
+         "it must have one"),
+        (["back_flip ~behaviour"], 'behaviour.parts[0]="back_flip ~behaviour": leaves no '
+         "behaviour, it must have one"),
+        (["back_flip behaviour.stages=7", "stand"], "behaviour.parts[0].behaviour.stages=7: must "
+         "be a list, in brackets"),
+        (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts[0].behaviour.stages[0]=5: "
+         "must be keys with values"),
     ],
 )  # fmt: skip
 def test_parts_that_are_wrong(parts, message):
@@ -125,6 +154,30 @@ def test_parts_that_are_wrong(parts, message):
         chain(*parts)
     assert str(caught.value).startswith(message)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (["~controller"], "controller: missing, it cannot be left out"),
+        (["~excursion"], "excursion: missing, it cannot be left out"),
+        (["behaviour.parts=[]"], "behaviour.parts=[]: too few values, at least 1"),
+        (["behaviour.parts=5"], "behaviour.parts=5: must be a list, in brackets"),
+        (["~behaviour.parts"], "behaviour.parts: missing, it cannot be left out"),
+        (["behaviour.parts=[{a:1}]"], 'behaviour.between="square": goes between parts that are '
+         "texts, and these are in full; give null"),
+        (["behaviour.rest.feet=[]"], "behaviour.rest.feet=[]: too few values, at least 1"),
+    ],
+)  # fmt: skip
+def test_a_chain_that_lacks_something(overrides, message):
+    with pytest.raises(InputError) as caught:
+        load(["behaviour=chain", *overrides])
+    assert str(caught.value) == message
+
+
+def test_as_many_parts_as_there_may_be():
+    assert len(chain(*["stand"] * 10).behaviour.parts) == 19
+    assert len(chain(*["stand"] * 20, more=["behaviour.between=null"]).behaviour.parts) == 20
 
 
 def test_a_log_roll_begins_lying():

@@ -14,7 +14,7 @@ from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings import STRICT
+from rotctl.settings import MOST_PARTS, STRICT
 
 
 @validated(frozen=True, config=STRICT)
@@ -69,7 +69,7 @@ class ChainSettings:
 
     name: str
     kind: Literal["chain"]
-    parts: Annotated[tuple[PartSettings, ...], Field(min_length=1, max_length=20)]
+    parts: Annotated[tuple[PartSettings, ...], Field(min_length=1, max_length=MOST_PARTS)]
     rest: RestSettings
     source: str = ""
     description: str = ""

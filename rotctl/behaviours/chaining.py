@@ -7,8 +7,9 @@ where that has none, a rest on the feet.
 
 from functools import lru_cache
 from math import atan2, cos, degrees, fsum, radians
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Behaviour, Placement, Signals
@@ -45,7 +46,7 @@ class RestSettings:
     """
 
     seconds: NonNegative
-    feet: tuple[str, ...]
+    feet: Annotated[tuple[str, ...], Field(min_length=1)]
     lean: Positive
     speed: Positive
     height: Positive
@@ -130,8 +131,7 @@ class Chain:
 
     def _over(self, memory: ChainMemory, state: State) -> bool:
         part = self._part(memory)
-        if isinstance(part, Rolling):  # it rolls on
-            return False
+        assert not isinstance(part, Rolling)  # only the last part rolls on, see ChainSettings
         own = part.over(memory.inner, _since(memory, state))
         # One step more than its rest, so that whoever looks at its last rows sees the whole of it.
         rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period

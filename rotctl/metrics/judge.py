@@ -39,7 +39,7 @@ from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.settings import STRICT
+from rotctl.settings import MOST_PARTS, STRICT
 
 Single = Annotated[
     AcrobaticCriteria
@@ -60,7 +60,7 @@ class ChainCriteria:
 
     name: str
     kind: Literal["chain"]
-    parts: Annotated[tuple[Single, ...], Field(max_length=20)] = ()
+    parts: Annotated[tuple[Single, ...], Field(max_length=MOST_PARTS)] = ()
     description: str = ""
 
 
