@@ -16,6 +16,7 @@ from rotctl.settings import MOST_PARTS
 KIND, SAID = "chain", "said"
 GAINS = ("supervisor", "thresholds", "contact", "pose", "tasks", "poses", "contacts")
 GROUPS = ("behaviour", "controller", "criteria", "excursion")  # that make a part
+WORLD = ("character", "terrain")  # that a part has from the run
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
 Composing = Callable[[list[str]], dict[str, Any]]
 
@@ -44,6 +45,11 @@ def composed(data: dict[str, Any], compose: Composing) -> dict[str, Any]:
         return {**data, "behaviour": chain}
     _require_few(len(said), 0)
     made = [_made(f"behaviour.parts[{i}]", part, compose) for i, part in enumerate(said)]
+    usual = compose([])
+    for number, one in enumerate(made):
+        _require_here(f"behaviour.parts[{number}]={brief(said[number])}", one, data, usual)
+        if number:
+            _require_facing(f"behaviour.parts[{number}]", one, compose)
     if between is not None:
         made = _joined(made, _made("behaviour.between", between, compose))
     _require_few(len(said), len(made) - len(said))
@@ -106,6 +112,29 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
     if made["behaviour"].get("kind") == KIND:
         raise InputError(f"{where}={brief(said)}: is a chain; name its parts")
     return {**made, SAID: shlex.join([words[0].partition("=")[2], *words[1:]])}
+
+
+def _require_here(
+    where: str, made: dict[str, Any], data: dict[str, Any], usual: dict[str, Any]
+) -> None:
+    """See that the run has the world and the body that a part's behaviour asks for."""
+    for group in WORLD:
+        asked = _name(made, group)
+        if asked not in (_name(usual, group), _name(data, group)):
+            raise InputError(
+                f"{where}: is for {group}={asked}, and the run has {group}={_name(data, group)}"
+            )
+
+
+def _require_facing(where: str, made: dict[str, Any], compose: Composing) -> None:
+    """See that no later part is told where to head."""
+    choice = f"behaviour={shlex.split(made[SAID])[0]}"
+    heading = made["behaviour"].get("heading")
+    if heading != compose([choice])["behaviour"].get("heading"):
+        raise InputError(
+            f"{where}: behaviour.heading={brief(heading)}: acts on nothing, a later part heads "
+            "where the feet point as it begins"
+        )
 
 
 def _part(made: dict[str, Any], data: dict[str, Any]) -> dict[str, Any]:

@@ -77,10 +77,8 @@ def test_nothing_goes_between_where_a_finish_says_when_it_ends():
     until = {"kind": "after", "seconds": 1.0}
 
     def compose(words):
-        stages = (
-            [{}, {"until": until}] if words[0] == "behaviour=counted" else [{"until": until}, {}]
-        )
-        behaviour = {"name": words[0], "kind": "rolling", "finish": {"stages": stages}}
+        stages = [{}, {"until": until}] if "behaviour=counted" in words else [{"until": until}, {}]
+        behaviour = {"name": "any", "kind": "rolling", "finish": {"stages": stages}}
         return {"behaviour": behaviour, "controller": {}, "criteria": {}, "excursion": {}}
 
     data = {
@@ -147,6 +145,13 @@ def test_what_was_said_of_a_part_does_not_act():
          "be a list, in brackets"),
         (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts[0].behaviour.stages[0]=5: "
          "must be keys with values"),
+        (["incline +finish=stand", "stand"], 'behaviour.parts[0]="incline +finish=stand": is for '
+         "terrain=incline, and the run has terrain=flat"),
+        (["stand", "baby_roll_over"], 'behaviour.parts[1]="baby_roll_over": is for character=baby, '
+         "and the run has character=adult"),
+        (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts[1]: "
+         "behaviour.heading=90.0: acts on nothing, a later part heads where the feet point as it "
+         "begins"),
     ],
 )  # fmt: skip
 def test_parts_that_are_wrong(parts, message):
@@ -173,6 +178,16 @@ def test_a_chain_that_lacks_something(overrides, message):
     with pytest.raises(InputError) as caught:
         load(["behaviour=chain", *overrides])
     assert str(caught.value) == message
+
+
+def test_a_part_may_be_for_the_terrain_of_the_run():
+    made = chain("stand", "incline", more=["terrain=incline"])
+    assert made.behaviour.parts[-1].behaviour.name == "incline"
+
+
+def test_the_first_part_heads_where_it_is_told():
+    first, _, last = chain("stand behaviour.heading=30", "backward_roll_1").behaviour.parts
+    assert (first.behaviour.heading, last.behaviour.roll_about) == (30.0, "right")
 
 
 def test_as_many_parts_as_there_may_be():
