@@ -6,7 +6,7 @@ its excursion is measured. What was said of it stays beside it: parts of one nam
 """
 
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rotctl.checked import brief
@@ -21,12 +21,15 @@ ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run 
 Composing = Callable[[list[str]], dict[str, Any]]
 
 
-def composed(data: dict[str, Any], compose: Composing) -> dict[str, Any]:
+def composed(
+    data: dict[str, Any], compose: Composing, overrides: Sequence[str] = ()
+) -> dict[str, Any]:
     """The same with the parts of its chain, if it is one, in full.
 
     Args:
         data: of a config, not checked yet.
         compose: makes the data of a config from overrides.
+        overrides: that it was made of.
 
     Raises:
         InputError: a part is wrong; one line that names it.
@@ -54,6 +57,7 @@ def composed(data: dict[str, Any], compose: Composing) -> dict[str, Any]:
         made = _joined(made, _made("behaviour.between", between, compose))
     _require_few(len(said), len(made) - len(said))
     data = {**data, "behaviour": {**chain, "parts": [_part(one, data) for one in made]}}
+    _require_taken(data, overrides, compose)
     criteria = data.get("criteria")
     if isinstance(criteria, dict) and criteria.get("kind") == KIND and not criteria.get("parts"):
         data["criteria"] = {**criteria, "parts": [one["criteria"] for one in made]}
@@ -135,6 +139,38 @@ def _require_facing(where: str, made: dict[str, Any], compose: Composing) -> Non
             f"{where}: behaviour.heading={brief(heading)}: acts on nothing, a later part heads "
             "where the feet point as it begins"
         )
+
+
+def _require_taken(data: dict[str, Any], overrides: Sequence[str], compose: Composing) -> None:
+    """See that gains and an excursion that the run is told are those of some part."""
+    parts = data["behaviour"]["parts"]
+    for group, own in (("controller", "gains"), ("excursion", "excursion")):
+        if not isinstance(data.get(group), dict) or not all(own in part for part in parts):
+            continue
+        names = ", ".join(dict.fromkeys(str(_name(part, "behaviour")) for part in parts))
+        bring = "bring their" if ", " in names else "brings its"
+        for override in overrides:
+            key = override.lstrip("+~").partition("=")[0]
+            others = [one for one in overrides if one != override]
+            if key.partition(".")[0] == group and _same(data, others, group, compose):
+                raise InputError(f"{override}: acts on nothing, {names} {bring} own {own}")
+
+
+def _same(data: dict[str, Any], others: list[str], group: str, compose: Composing) -> bool:
+    """Whether other overrides make what acts of a group where every part brings its own."""
+    if group == "excursion":  # nothing of it
+        return True
+    try:
+        without = compose(others)
+    except InputError:  # they build on what is left out
+        return False
+    return _left(data[group]) == _left(without[group])
+
+
+def _left(controller: dict[str, Any]) -> dict[str, Any]:
+    """What of a controller acts whatever gains the parts bring."""
+    aside = ("name", "description", *GAINS)
+    return {key: value for key, value in controller.items() if key not in aside}
 
 
 def _part(made: dict[str, Any], data: dict[str, Any]) -> dict[str, Any]:

@@ -88,9 +88,9 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     """
     body = own_body.named(overrides)
     if body is None:
-        return chained.composed(_composed(overrides), _composed)
+        return chained.composed(_composed(overrides), _composed, overrides)
     data = {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
-    return chained.composed(data, _composed)
+    return chained.composed(data, _composed, body.others)
 
 
 def _composed(overrides: list[str]) -> dict[str, Any]:

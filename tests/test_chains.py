@@ -22,6 +22,7 @@ from rotctl.run import in_memory, run
 from rotctl.scenario import build, run_id
 from rotctl.schema import check
 from rotctl.summary import links_of, summarise
+from rotctl.sweep.points import points
 from rotctl.wording import readable
 from rotctl.written import to_dict
 
@@ -178,6 +179,46 @@ def test_a_chain_that_lacks_something(overrides, message):
     with pytest.raises(InputError) as caught:
         load(["behaviour=chain", *overrides])
     assert str(caught.value) == message
+
+
+ACROBATS = ("behaviour=chain", "behaviour.parts=[stand,back_flip]", "behaviour.between=null")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "idle"),
+    [
+        (["controller=wheeling"], "controller=wheeling"),
+        (["controller=listening", "controller.rate=120"], "controller=listening"),
+        (["controller=listening", "controller.pose.stiffness=5"], "controller.pose.stiffness=5"),
+    ],
+)
+def test_gains_that_no_part_takes(overrides, idle):
+    """Both parts bring theirs; what they take of the run's controller is its rate, among others."""
+    with pytest.raises(InputError) as caught:
+        load([*ACROBATS, *overrides])
+    assert str(caught.value) == f"{idle}: acts on nothing, stand, back_flip bring their own gains"
+
+
+@pytest.mark.parametrize("more", [[], ["excursion.phase_time=3"]])
+def test_an_excursion_that_no_part_takes(more):
+    with pytest.raises(InputError) as caught:
+        chain("back_flip", more=["excursion=oriented", *more])
+    assert str(caught.value) == (
+        "excursion=oriented: acts on nothing, back_flip brings its own excursion"
+    )
+
+
+def test_nor_in_a_sweep():
+    """Which does not compose each of its points anew."""
+    grid = ["behaviour=chain", "controller=listening", "controller.pose.stiffness=5,6"]
+    with pytest.raises(InputError, match=r"^controller.pose.stiffness=5: acts on nothing, "):
+        list(points([grid]))
+
+
+def test_what_the_run_is_told_acts_on_the_parts_that_take_it():
+    taken = load([*ACROBATS, "controller.pose.stiffness=5"])
+    assert [part.gains is None for part in taken.behaviour.parts] == [False, True]
+    assert load([*ACROBATS, "controller=listening"]).controller.rate != taken.controller.rate
 
 
 def test_a_part_may_be_for_the_terrain_of_the_run():

@@ -12,6 +12,7 @@ from math import prod
 from typing import Any
 
 from rotctl import plain
+from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.results.keys import value_at
@@ -20,6 +21,7 @@ from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
 from rotctl.written import to_dict
 
 PARTS = "behaviour.parts"  # of a chain, which are composed themselves
+TAKEN = ("controller.", "excursion.")  # of a run, by parts of a chain without their own
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]
 
@@ -84,6 +86,10 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     if choosing not in bases:
         bases[choosing] = load(list(choosing))
     base = bases[choosing]
+    if isinstance(base.behaviour, ChainSettings) and any(
+        one.key.startswith(TAKEN) for one in assignments
+    ):
+        return load(texts)
     set_by: dict[str, list[Assignment]] = {}
     for one in assignments:
         if one.way is not None:
