@@ -77,6 +77,8 @@ class Criteria:
         found: Any = own if self.base is None else self.base
         if not isinstance(found, Mapping):
             raise InputError("its config has no criteria")
+        if found.get("kind") == own.get("kind") == "chain" and not found.get("parts"):
+            found = own  # those that its parts have by themselves, which came with the behaviour
         for place, value in self.changes:
             changed = exchanged(found, place, value)
             if changed is NOTHING:
