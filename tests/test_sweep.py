@@ -24,6 +24,14 @@ from rotctl.sweep.points import points
 from rotctl.sweep.task import carry_out, ordered
 
 BRIEF = "duration=2"
+CHAIN = (
+    *("behaviour=chain", "behaviour.parts=[stand,stand]", "behaviour.between=null"),
+    *("behaviour.rest.seconds=0.1", "controller=standing", "duration=0.5"),
+)
+FINISH = (
+    *("+finish=stand", "behaviour.finish.after=0.3"),
+    *("behaviour.finish.reach=1", "behaviour.finish.turning=1"),
+)
 
 
 @pytest.fixture
@@ -280,6 +288,9 @@ def test_a_manifest_of_somebody_else_is_refused(cli, tmp_path):
     [
         *(["behaviour=stand", "duration=0.5"], ["plant=randomised", "duration=0.5"]),
         ["behaviour=back_flip", "duration=2.5"],  # has landed, and not all feet are set down
+        CHAIN,  # is in its second part
+        ["behaviour=forward_roll", *FINISH, "duration=1.5"],  # stands up
+        ["physics=lockstep", "duration=0.5"],
         ["duration=0.5"],
     ],
 )
