@@ -40,7 +40,8 @@ def composed(
     chain = {key: value for key, value in behaviour.items() if key != "between"}
     said, between = chain.get("parts"), behaviour.get("between")
     if not isinstance(said, list) or not any(isinstance(part, str) for part in said):
-        if isinstance(said, list) and said and between is not None:
+        full = isinstance(said, list) and any(isinstance(part, dict) for part in said)
+        if full and between is not None:
             raise InputError(
                 f"behaviour.between={brief(between)}: goes between parts that are texts, and these "
                 "are in full; give null"
@@ -133,8 +134,8 @@ def _require_here(
 def _require_facing(where: str, made: dict[str, Any], compose: Composing) -> None:
     """See that no later part is told where to head."""
     choice = f"behaviour={shlex.split(made[SAID])[0]}"
-    heading = made["behaviour"].get("heading")
-    if heading != compose([choice])["behaviour"].get("heading"):
+    heading, usual = (one["behaviour"].get("heading") for one in (made, compose([choice])))
+    if heading not in (None, usual):
         raise InputError(
             f"{where}: behaviour.heading={brief(heading)}: acts on nothing, a later part heads "
             "where the feet point as it begins"

@@ -150,6 +150,8 @@ def test_what_was_said_of_a_part_does_not_act():
          "terrain=incline, and the run has terrain=flat"),
         (["stand", "baby_roll_over"], 'behaviour.parts[1]="baby_roll_over": is for character=baby, '
          "and the run has character=adult"),
+        (["stand", "stand ~behaviour.heading"], "behaviour.parts[2].behaviour.heading: missing, it "
+         "cannot be left out"),
         (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts[1]: "
          "behaviour.heading=90.0: acts on nothing, a later part heads where the feet point as it "
          "begins"),
@@ -170,6 +172,7 @@ def test_parts_that_are_wrong(parts, message):
         (["behaviour.parts=[]"], "behaviour.parts=[]: too few values, at least 1"),
         (["behaviour.parts=5"], "behaviour.parts=5: must be a list, in brackets"),
         (["~behaviour.parts"], "behaviour.parts: missing, it cannot be left out"),
+        (["behaviour.parts=[[a]]"], 'behaviour.parts[0]=["a"]: must be keys with values'),
         (["behaviour.parts=[{a:1}]"], 'behaviour.between="square": goes between parts that are '
          "texts, and these are in full; give null"),
         (["behaviour.rest.feet=[]"], "behaviour.rest.feet=[]: too few values, at least 1"),
