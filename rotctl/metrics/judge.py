@@ -178,7 +178,7 @@ def _chained(
         first, end = part.rows
         wanted = (end - first) * period
         made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
-        reasons.append(made.reason)
+        reasons.append(made.reason.replace("the run ends", "it ends", 1))  # and the run goes on
     found = {
         "parts_succeeded": sum(not reason for reason in reasons),
         "parts_begun": len(parts),
