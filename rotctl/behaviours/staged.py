@@ -6,39 +6,26 @@ forward, left and up; the phase is the excursion about left, [AlBorno2014], or a
 """
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rotctl.behaviours import possible, take_off
-from rotctl.behaviours.aims import Aim
-from rotctl.behaviours.behaviour import (
-    Placement,
-    Signals,
-    contact_gains_of,
-    gains_of,
-    pose_gains_of,
-)
+from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
-from rotctl.behaviours.flight import Aloft, Flight
-from rotctl.behaviours.posing import OverPhase, PoseLaw
+from rotctl.behaviours.flight import Aloft
+from rotctl.behaviours.posing import OverPhase
+from rotctl.behaviours.prepared import pose_law, prepared, task_names
 from rotctl.behaviours.scene import Begin, Scene, Step
-from rotctl.behaviours.stages import Stage, TaskSettings, mirrored
-from rotctl.behaviours.stepping import Stepping
+from rotctl.behaviours.stages import mirrored
 from rotctl.control import Command, ControllerSettings
-from rotctl.control.kinds import kind
-from rotctl.control.settings import ContactGains, PoseGains
-from rotctl.control.task import TASK, Tasks, task
+from rotctl.control.settings import PoseGains
 from rotctl.errors import InputError
 from rotctl.mechanics import excursion
-from rotctl.mechanics.bodies import SIDES, body_ids
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.motion import make_pose_pair
-from rotctl.rotations import Array, advance, rotation_between
+from rotctl.rotations import advance, rotation_between
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.staged_settings import StagedSettings
@@ -69,26 +56,6 @@ class StagedMemory(NamedTuple):
     still: float = 0.0
     aloft: Aloft | None = None
     step: Step = Step()
-
-
-@dataclass(frozen=True)
-class _Part:
-    """A stage, ready: its tasks, what fills them, and their places among the behaviour's.
-
-    An aim may take a task's weight for a step, and leave the rest of it as it was; `fresh` is what
-    tasks begin a run with. Each filler has its task as a view of its row.
-    """
-
-    tasks: Tasks
-    fillers: list[tuple[Tasks, str, Aim]]
-    slots: list[int]
-    held_out: NDArray[np.bool_]
-    behind: Array | None
-    pose: PoseGains
-    contact: ContactGains
-    aims: dict[str, Aim]
-    stepping: Stepping | None
-    fresh: Tasks
 
 
 class Staged:
@@ -123,77 +90,24 @@ class Staged:
         found: dict[str, None] = {}
         for stage in self._stages:
             for name, wanted in (settings.tasks | stage.tasks).items():
-                found.update(dict.fromkeys(_names(model, name, wanted)))
+                found.update(dict.fromkeys(task_names(model, name, wanted)))
             if stage.until:
                 stage.until.check(model)
             if stage.otherwise:
                 stage.otherwise.when.check(model)
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
-        self._parts = [self._part(stage) for stage in self._stages]
-        self._poses = [self._law(stage) for stage in self._stages]
+        self._parts = [
+            prepared(stage, settings.tasks | stage.tasks, self.tasks, self.axes, control, model)
+            for stage in self._stages
+        ]
+        self._poses = [
+            pose_law(stage, settings.shape, self._frame, self._target, model)
+            for stage in self._stages
+        ]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
         for part in self._parts:
             possible.check(model, self.axes, self._target, part.aims, self._laws, settings.take_off)
-
-    def _part(self, stage: Stage) -> _Part:
-        model = self._model
-        rows: list[Tasks] = []
-        filled: list[tuple[int, str, Aim]] = []
-        slots: list[int] = []
-        every = self._settings.tasks | stage.tasks
-        named = {name: wanted.gains or name for name, wanted in every.items()}
-        gains = gains_of(self._control, tuple(named.values()))
-        for name, wanted in every.items():
-            key = f"behaviour.stages.{stage.name}.tasks.{name}.body"
-            bodies = body_ids(model.mj, [wanted.body], key) if wanted.body else [0]
-            for body, slot in zip(bodies, _names(model, name, wanted), strict=True):
-                if wanted.aim:
-                    wanted.aim.check(model)
-                    filled.append((len(rows), wanted.kind, wanted.aim))
-                number = kind(wanted.kind).number
-                rows.append(task(number, gains[named[name]], self.axes, body, wanted.point))
-                slots.append(self.tasks.index(slot))
-        held_out = model.excluded.copy()
-        held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
-        tasks = np.concatenate([np.zeros(0, TASK), *rows])
-        fillers = [(tasks[row], kind_name, aim) for row, kind_name, aim in filled]
-        aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
-        pose = pose_gains_of(self._control, stage.pose)
-        contact = contact_gains_of(self._control, stage.contact)
-        stepping = next((aim for aim in aims.values() if isinstance(aim, Stepping)), None)
-        behind = self._behind(stage)
-        return _Part(
-            tasks, fillers, slots, held_out, behind, pose, contact, aims, stepping, tasks.copy()
-        )
-
-    def _behind(self, stage: Stage) -> Array | None:
-        """What of each body (nbody,) may only be used where it stands on its front."""
-        if not stage.toes:
-            return None
-        mj, key = self._model.mj, f"behaviour.stages.{stage.name}.toes"
-        behind = np.full(mj.nbody, -np.inf)
-        for body in body_ids(mj, stage.toes, key):
-            solid = (mj.geom_bodyid == body) & (mj.geom_contype > 0)
-            behind[body] = mj.geom_pos[solid, 0].mean()
-        return behind
-
-    def _law(self, stage: Stage) -> PoseLaw:
-        key = f"behaviour.stages.{stage.name}"
-        if stage.flight:
-            flies, shape = stage.flight, self._settings.shape
-            key = f"{key}.flight"
-            return Flight(flies, self._model, self._frame, self._target, key, shape)
-        if stage.rise:
-            return stage.rise.make(self._model, f"{key}.rise")
-        if stage.turn:
-            return stage.turn.make(self._model, f"{key}.turn")
-        if stage.glide:
-            return stage.glide.make(self._model, f"{key}.glide")
-        if stage.reach:
-            return stage.reach.make(self._model, f"{key}.reach")
-        assert stage.poses  # one of the six is there
-        return OverPhase(make_pose_pair(self._model, stage.poses, f"{key}.poses"), stage.lead)
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] about what it turns about."""
@@ -335,12 +249,6 @@ class Staged:
             return self._target
         phase, first = memory.excursion.phase, memory.first.phase
         return phase - first + (math.radians(to) - phase + math.pi) % math.tau - math.pi
-
-
-def _names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
-    """A task's names: one for each side where its body stands for both."""
-    both = wanted.body and len(body_ids(model.mj, [wanted.body], f"tasks.{name}.body")) == 2
-    return [name + side for side in SIDES] if both else [name]
 
 
 def _lag(pose: PoseGains) -> float:
