@@ -312,7 +312,7 @@ def test_each_part_is_judged_by_itself(stands):
     assert summary["parts_succeeded"] == 1  # the last one stands for more than two seconds
     parts = spans(log, [link.stages for link in links_of(config)])
     for part, words in zip(parts, summary["parts"].split("; "), strict=True):
-        assert words.startswith(f"stand {log['trajectory/time'][part.rows[0]]:.2f}: ")
+        assert words.startswith(f"stand {log['trajectory/time'][part.rows.start]:.2f}: ")
         assert part["trajectory/time"][0] == 0.0
         assert part["command/stage"].max() == 0
     assert sum(len(part["trajectory/time"]) for part in parts) == len(log["trajectory/time"])

@@ -207,7 +207,7 @@ def test_it_moves_and_is_drawn_as_it_touches(here, more):
 def test_wind_pushes_what_faces_it(here):
     """Air from ahead on a still body: half the density times the faces of the boxes."""
     model = build(load([HULLS])).model
-    from rotctl.mechanics.disturbance import Air
+    from rotctl.mechanics.wind import Air
 
     data = mujoco.MjData(model.mj)
     mujoco.mj_forward(model.mj, data)

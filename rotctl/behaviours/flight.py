@@ -16,12 +16,13 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from rotctl.behaviours.easing import smooth, soonest
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.flight_settings import TUCK, EntrySettings, FlightSettings
 from rotctl.behaviours.landing import Contact, Landing
 from rotctl.behaviours.levelling import Ahead, Levelled, Levelling
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.tucking import Tucking, smooth
+from rotctl.behaviours.tucking import Tucking
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.mechanics.bodies import ROOT_BODY, body_ids, is_character, lowest_and_highest
@@ -238,7 +239,7 @@ class Flight:
         need = 0.0 if late else self.left_to_turn(scene, contact, turning) - before.level.missed
         held = before.held if late else self.tucking.amount(need, turning, before.amount, time)
         wanted = held * self.tucking.held(time)
-        amount, rate = self.tucking.towards(wanted, before.amount, before.rate, period)
+        amount, rate = soonest(wanted, before.amount, before.rate, settings.change, period)
         gone = (scene.state.time - scene.begin.time) / settings.change
         pose = self.tucking.pose(amount, contact)
         if self._feet and self._feet.legs_reach:

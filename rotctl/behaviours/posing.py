@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.easing import smooth
 from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.scene import Scene
 from rotctl.mechanics.model import Model
@@ -249,7 +250,7 @@ class Reach(Memoryless):
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
         gone = min((scene.state.time - scene.begin.time) / self.seconds, 1.0)
-        share = gone * gone * (3.0 - 2.0 * gone)
+        share = smooth(gone)
         change = self.end - scene.begin.angles
         pose = scene.begin.angles + share * change
         speed = 6.0 * gone * (1.0 - gone) / self.seconds * change

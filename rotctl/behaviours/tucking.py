@@ -4,11 +4,9 @@ Which of them turns at the mean rate that is wanted until the landing, omega = |
 the body comes there and opens in the end.
 """
 
-from math import copysign, sqrt
-from typing import TypeVar
-
 import numpy as np
 
+from rotctl.behaviours.easing import smooth
 from rotctl.behaviours.flight_settings import FlightSettings
 from rotctl.behaviours.landing import Contact
 from rotctl.mechanics.model import Model
@@ -20,9 +18,6 @@ AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulate
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at
 REMAINING = 1.0 - INSTANTS
 HALVINGS = 14  # of the amounts that are possible: 0.0001
-SETTLING = 4.0  # [periods] in which the amount comes near, so that it does not overshoot
-
-Share = TypeVar("Share", float, Array)
 
 
 class Tucking:
@@ -116,17 +111,3 @@ class Tucking:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if falls_short(middle) else (low, middle)
         return 0.5 * (low + high)
-
-    def towards(
-        self, wanted: float, amount: float, rate: float, period: float
-    ) -> tuple[float, float]:
-        """Amount and its rate [1/s] a period [s] on: soonest there, a unit's way in `change`."""
-        most, way = 4.0 / self._settings.change**2, wanted - amount
-        fastest = min(sqrt(2.0 * most * abs(way)), abs(way) / (SETTLING * period))
-        rate += min(max(copysign(fastest, way) - rate, -most * period), most * period)
-        return amount + rate * period, rate
-
-
-def smooth(share: Share) -> Share:
-    """From 0 to 1 without a jump of speed."""
-    return share * share * (3.0 - 2.0 * share)

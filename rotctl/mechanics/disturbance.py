@@ -1,11 +1,11 @@
-"""What disturbs a run, drawn from its seed: pushes, wind, and what `rotctl.mechanics.changes` has.
+"""What disturbs a run, drawn from its seed: pushes, and what `wind` and `changes` beside it have.
 
 Forces act on bodies through MuJoCo's `xfrc_applied` and are told in the log. Control knows of them
 only where `controller.sees_disturbance` says so.
 """
 
 from dataclasses import dataclass
-from math import cos, inf, nan, pi, radians, sin, sqrt
+from math import cos, nan, radians, sin
 from typing import Annotated, ClassVar, Literal, Protocol
 
 import mujoco
@@ -14,18 +14,15 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.linear import product
-from rotctl.mechanics.bodies import ROOT_BODY, body_id, is_character
+from rotctl.mechanics.bodies import ROOT_BODY, body_id
 from rotctl.mechanics.changes import Load, Slip
-from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.onset import Onset, Phase, Time
-from rotctl.rotations import Array, cross, dot
+from rotctl.mechanics.onset import SHORTEST, Onset, Phase, Time, far_from
+from rotctl.mechanics.wind import Wind
+from rotctl.rotations import Array, cross
 from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends
 
 DISTURBANCE_STREAM = 2  # beside the start's, which is drawn from the seed alone, and the terrain's
-
-
-SHORTEST = 1e-3  # [s] of a push: time counts to 1e-15 of itself
 
 
 class Disturbance(Protocol):
@@ -116,40 +113,6 @@ class Push:
         return PushAtPhase(push, radians(generator.uniform(*ends(self.phase))))
 
 
-@validated(frozen=True, config=STRICT)
-class Wind:
-    """Wind, and the air's drag on all that moves in it.
-
-    Attributes:
-        speed: [m/s]; 0 is still air.
-        direction: where it blows to, from forward towards left [deg]; a range to draw from, or
-            a number.
-        density: of the air [kg/m3].
-        drag: coefficient of a capsule [-].
-        time: when it begins to blow [s]; before and after it there is no air.
-        duration: for so long [s]; null to the end.
-    """
-
-    name: str
-    kind: Literal["wind"]
-    speed: NonNegative
-    direction: Drawn
-    density: Positive
-    drag: Positive
-    time: Time = 0.0
-    duration: Annotated[Positive, Field(ge=SHORTEST)] | None = None
-    description: str = ""
-    changes_model: ClassVar[bool] = False
-
-    def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "Air":
-        """For one run whose forward, left and up are the rows of `axes`."""
-        angle = radians(generator.uniform(*ends(self.direction)))
-        velocity = self.speed * product(np.array([cos(angle), sin(angle), 0.0]), axes)
-        begin = float(generator.uniform(*ends(self.time)))
-        end = inf if self.duration is None else begin + self.duration
-        return Air(model.mj, velocity, 0.5 * self.density * self.drag, begin, end)
-
-
 DisturbanceSettings = Annotated[Calm | Push | Wind | Load | Slip, Field(discriminator="kind")]
 """What can disturb. Where one `changes_model`, the run has a model of its own."""
 
@@ -199,7 +162,7 @@ class OnePush:
 
     def idle(self, time: float, period: float) -> bool:
         """See `Disturbance`."""
-        return _outside(time, period, self.begin, self.end)
+        return far_from(time, period, self.begin, self.end)
 
 
 class PushAtPhase:
@@ -227,77 +190,3 @@ class PushAtPhase:
     def idle(self, time: float, period: float) -> bool:
         """See `Disturbance`; while it waits for its phase it is asked at each step."""
         return self._push.idle(time, period) and (self._begun or time < self._push.begin)
-
-
-class Air:
-    """Drag of moving air on every solid capsule and sphere, by the area it shows."""
-
-    remark = ""
-
-    def __init__(
-        self,
-        mj: mujoco.MjModel,
-        velocity: Array,
-        factor: float,
-        begin: float = 0.0,
-        end: float = inf,
-    ) -> None:
-        """Air of that velocity (3,) [m/s].
-
-        Args:
-            factor: half the density times the drag coefficient [kg/m3].
-            begin, end: between which there is air [s]; a control step that holds a part of that
-                time gets that part of the force.
-        """
-        self._mj, self._wind, self._factor = mj, velocity, factor
-        self._begin, self._end = begin, end
-        solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
-        self._geoms = np.flatnonzero(solid).tolist()
-        self._capsule = mj.geom_type == mujoco.mjtGeom.mjGEOM_CAPSULE
-        self._hulls = hulls(mj)
-
-    def awaited(self, time: float) -> str:
-        """See `Disturbance`."""
-        return "the wind" if time <= self._begin else ""
-
-    def apply(self, data: mujoco.MjData, period: float, phase: float = nan) -> Array:
-        """See `Disturbance`."""
-        mj = self._mj
-        data.xfrc_applied[:] = 0.0
-        motion, total = np.empty(6), np.zeros(6)
-        overlap = min(data.time + period, self._end) - max(data.time, self._begin)
-        share = min(max(overlap / period, 0.0), 1.0)
-        if share == 0.0:
-            return total
-        for geom in self._geoms:
-            mujoco.mj_objectVelocity(mj, data, mujoco.mjtObj.mjOBJ_GEOM, geom, motion, 0)
-            flow = self._wind - motion[3:]
-            speed = sqrt(dot(flow, flow))
-            if speed == 0.0:
-                continue
-            axis = data.geom_xmat[geom].reshape(3, 3)[:, 2].copy()
-            across = cross(axis, flow / speed)
-            if geom in self._hulls:  # the side of the box around it that faces the wind
-                x, y, z = mj.geom_size[geom].tolist()
-                frame = data.geom_xmat[geom].reshape(3, 3)
-                area = dot(np.abs(product(frame.T, flow / speed)), np.array([y * z, x * z, x * y]))
-                area *= 4.0
-            else:
-                radius, half = mj.geom_size[geom, :2] * (1.0, self._capsule[geom])
-                area = pi * radius**2 + 4.0 * radius * half * sqrt(dot(across, across))
-            body = mj.geom_bodyid[geom]
-            force = share * self._factor * area * speed * flow
-            data.xfrc_applied[body, :3] += force
-            data.xfrc_applied[body, 3:] += cross(data.geom_xpos[geom] - data.xipos[body], force)
-            total[:3] += force
-            total[3:] += cross(data.geom_xpos[geom] - data.subtree_com[ROOT_BODY], force)
-        return total
-
-    def idle(self, time: float, period: float) -> bool:
-        """See `Disturbance`."""
-        return _outside(time, period, self._begin, self._end)
-
-
-def _outside(time: float, period: float, begin: float, end: float) -> bool:
-    """Whether a control step at `time` is two before `begin`, or two behind `end` [s]."""
-    return time + 2.0 * period < begin or time - 2.0 * period > end

@@ -20,6 +20,7 @@ def _within_a_turn(phase: float | tuple[float, float]) -> float | tuple[float, f
     return phase
 
 
+SHORTEST = 1e-3  # [s] of what acts for a while: time counts to 1e-15 of itself
 ROUNDING = 1e-9  # [s] by which a run's time, a sum of its steps, may miss a control step's
 
 Time = Annotated[Drawn, AfterValidator(_from_the_start)]
@@ -51,3 +52,8 @@ def passed(goal: float, last: float, phase: float) -> bool:
     """Whether a step from one phase to the next goes over `goal`, either way [rad]."""
     step, ahead = phase - last, goal - last
     return ahead % tau <= step if step > 0.0 else -ahead % tau <= -step
+
+
+def far_from(time: float, period: float, begin: float, end: float) -> bool:
+    """Whether a control step at `time` is two before `begin`, or two behind `end` [s]."""
+    return time + 2.0 * period < begin or time - 2.0 * period > end

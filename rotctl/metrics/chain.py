@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.excerpt import Excerpt
 from rotctl.metrics.halts import Halts
 
 COLUMNS = (
@@ -32,32 +33,21 @@ class Link(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Span:
-    """Some rows of a log, as a log of their own that begins at time 0 in stage 0.
+class Span(Excerpt):
+    """A part's rows, as a log of their own that begins at time 0 in stage 0.
 
     Attributes:
-        log: that they are of.
-        rows: first one, and the one after the last.
         stage: number of the part's first.
     """
 
-    log: Arrays
-    rows: tuple[int, int]
     stage: int
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Those rows of one array."""
-        whole = np.asarray(self.log[name])
-        if name.startswith(("model/", "events/")):
-            return whole
-        own = whole[slice(*self.rows)]
+        own = super().__getitem__(name)
         if name == "trajectory/time":
             return np.asarray(own - own[:1])
         return np.asarray(own - self.stage) if name == "command/stage" else own
-
-    def __contains__(self, name: object) -> bool:
-        """Whether there is one of that name."""
-        return name in self.log
 
 
 def spans(log: Arrays, stages: Sequence[int]) -> list[Span]:
@@ -68,7 +58,7 @@ def spans(log: Arrays, stages: Sequence[int]) -> list[Span]:
     for begin, end in zip(first, first[1:], strict=False):
         rows = np.flatnonzero((stage >= begin) & (stage < end))
         if len(rows):
-            found.append(Span(log, (int(rows[0]), int(rows[-1]) + 1), begin))
+            found.append(Span(log, slice(int(rows[0]), int(rows[-1]) + 1), begin))
     return found
 
 
@@ -76,6 +66,6 @@ def told(log: Arrays, links: Sequence[Link], parts: Sequence[Span], reasons: Seq
     """Each part in words, for a summary row."""
     time = floats(log, "trajectory/time")
     return "; ".join(
-        f"{link.name} {time[part.rows[0]]:.2f}: {reason or 'success'}"
+        f"{link.name} {time[part.rows.start]:.2f}: {reason or 'success'}"
         for link, part, reason in zip(links, parts, reasons, strict=False)
     )

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import Any, Literal, NamedTuple
 
 import mujoco
@@ -11,6 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import rolling, standing
 from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.excerpt import Excerpt
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.rolling_rules import failure_reason
@@ -52,23 +53,6 @@ class FinishCriteria:
     description: str = ""
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Some rows of a log."""
-
-    log: Arrays
-    rows: slice
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """Those rows of one array."""
-        whole = np.asarray(self.log[name])
-        return whole if name.startswith(("model/", "events/")) else whole[self.rows]
-
-    def __contains__(self, name: object) -> bool:
-        """Whether there is one of that name."""
-        return name in self.log
-
-
 class Rolled(NamedTuple):
     """What of a run is the roll.
 
@@ -85,10 +69,10 @@ def rolled(log: Arrays, commanded: Mapping[str, float]) -> Rolled:
     """What of a run is the roll, by what was asked for; see `RollingSettings.commanded`."""
     time, told = floats(log, "trajectory/time"), commanded["finish_commanded"]
     if "revolutions_told" not in commanded:
-        return Rolled(_Part(log, slice(0, int(np.searchsorted(time, told)))), told)
+        return Rolled(Excerpt(log, slice(0, int(np.searchsorted(time, told)))), told)
     turned = floats(log, "trajectory/phase") >= math.tau * commanded["revolutions_told"]
     rows = np.flatnonzero((time >= told) & turned)
-    roll = _Part(log, slice(0, begins(log)))
+    roll = Excerpt(log, slice(0, begins(log)))
     return Rolled(roll, float(time[rows[0]]) if len(rows) else math.inf)
 
 
@@ -136,7 +120,7 @@ def judge(
     direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
     roll = rolling.measure(part, criteria.roll, direction, period, halts)
     rest = max(row, steps - round(criteria.stand.rest / period))
-    end = _Part(log, slice(rest, None))
+    end = Excerpt(log, slice(rest, None))
     settings = replace(criteria.stand, height=1e-3)  # of what it was at first: a squat
     stood = standing.measure(end, settings, period)
     com, ground = floats(end, "trajectory/com"), floats(end, "trajectory/ground_height")

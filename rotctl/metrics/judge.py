@@ -175,7 +175,7 @@ def _chained(
     parts = chain.spans(log, [link.stages for link in links])
     reasons = []
     for part, own, link in zip(parts, criteria.parts, links, strict=False):
-        first, end = part.rows
+        first, end = part.rows.start, part.rows.stop
         wanted = (end - first) * period
         made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
         reasons.append(made.reason.replace("the run ends", "it ends", 1))  # and the run goes on

@@ -51,7 +51,7 @@ def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
     """Of each part what it shows by itself, or a look at it, if it only stands."""
     found = []
     for span in spans(log, stages):
-        first, end = span.rows[0], min(span.rows[1], rows)
+        first, end = span.rows.start, min(span.rows.stop, rows)
         if end - first < 2:
             continue
         shown = _of_one(span, span["trajectory/time"][: end - first])

@@ -120,19 +120,15 @@ def draw(
         )
     )
     start = Start(float(pitch), np.array([vx, vy, 0.0]), np.array([wx, wy, wz]))
+    if roll_about != "left" and (settings.falling or settings.aloft):
+        does = "falls onto the feet of who turns" if settings.falling else "turns"
+        raise InputError(
+            f"start={settings.name} {does} about the left axis, and "
+            f"behaviour.roll_about={roll_about}"
+        )
     if settings.falling:
-        if roll_about != "left":
-            raise InputError(
-                f"start={settings.name} falls onto the feet of who turns about the left axis, and "
-                f"behaviour.roll_about={roll_about}"
-            )
         return _falling(settings, settings.falling, model, start, generator)
     if settings.aloft:
-        if roll_about != "left":
-            raise InputError(
-                f"start={settings.name} turns about the left axis, and "
-                f"behaviour.roll_about={roll_about}"
-            )
         return _aloft(settings, settings.aloft, model, start, generator)
     if not settings.postures:
         return start
