@@ -7,14 +7,16 @@ its excursion is measured. What was said of it stays beside it: parts of one nam
 
 import shlex
 from collections.abc import Callable, Sequence
+from dataclasses import fields
 from typing import Any
 
 from rotctl.checked import brief
+from rotctl.control.settings import Gains
 from rotctl.errors import InputError
 from rotctl.settings import MOST_PARTS
 
 KIND, SAID = "chain", "said"
-GAINS = ("supervisor", "thresholds", "contact", "pose", "tasks", "poses", "contacts")
+GAINS = tuple(part.name for part in fields(Gains))
 GROUPS = ("behaviour", "controller", "criteria", "excursion")  # that make a part
 WORLD = ("character", "terrain")  # that a part has from the run
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
