@@ -65,9 +65,11 @@ def seconds_of(log):
         ),
         # One that never stands still has fallen.
         (
-            log_of(9.0, stages=(1.0, 2.0), flies=(2.2, 2.8), moves=(1.8, 9.0)),
+            log_of(9.0, stages=(1.0, 2.0, 2.8), flies=(2.2, 2.8), moves=(1.8, 9.0)),
             [(1.7, 2.2), (2.2, 2.8), (2.8, 5.8)],
         ),
+        # One that does not fly, and tumbles after its last stage began: the skill, and the fall.
+        (log_of(9.0, stages=(1.0, 2.0), flies=(2.5, 2.8), moves=(0.8, 9.0)), [(0.3, 5.8)]),
         # A dive: until it is in the water, where nothing touches it for long.
         (
             log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0)),
@@ -100,11 +102,11 @@ def test_a_dive_from_the_hands_is_shown_from_when_the_handstand_is_left():
 
 def test_of_a_chain_each_part_is_shown():
     """A flight, a stand, a flight: each as by itself, the stand by one look."""
-    log = log_of(15.0, stages=(1.0, 5.0, 9.0, 10.0), flies=(2.0, 3.0), moves=(1.8, 3.6))
+    log = log_of(15.0, stages=(1.0, 3.0, 5.0, 9.0, 10.0, 12.0), flies=(2.0, 3.0), moves=(1.8, 3.6))
     again = slice(round(9.0 * RATE), round(14.0 * RATE))
     for name in ("contacts/count", "trajectory/com_velocity"):
         log[name][again] = log[name][: round(5.0 * RATE)]
-    found = parts(log, log["trajectory/time"], (2, 1, 2))
+    found = parts(log, log["trajectory/time"], (3, 1, 3))
     seconds = [(round(part.first / RATE, 2), round(part.last / RATE, 2)) for part in found]
     flip = [(1.5, 2.0), (2.0, 3.0), (3.0, 4.1)]
     later = [(first + 9.0, last + 9.0) for first, last in flip]

@@ -73,9 +73,11 @@ def _of_one(log: Arrays, time: Array) -> list[Part]:
     if not period:
         return []
     off, down = longest_flight(log)
-    if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
-        return _flight(log, off, min(down, rows - 1), period, rows)
     first, last = _begin(log, staged, period), _still(log, 0, period, rows)
+    if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
+        if staged[off] < staged.max():
+            return _flight(log, off, min(down, rows - 1), period, rows)
+        last = min(last, down + round(LONGEST / period))  # it tumbles, after its last stage began
     return [Part(first, last, 1.0)] if first is not None and last > first else []
 
 
