@@ -40,6 +40,21 @@ def make(kind: str, name: str, source: str) -> Path:
     Raises:
         InputError: there is no such choice, or one of that name already; nothing is written.
     """
+    path, there = free(kind, name), named_files(kind)
+    if source not in there:
+        raise InputError(f"--from={source}: no such {kind}; {instead(source, there)}")
+    text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
+    text = _NAME.sub(f"name: {name}", text, count=1)
+    copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"
+    return write(path, text if text.startswith("# @") else copied + text)
+
+
+def free(kind: str, name: str) -> Path:
+    """Where a file of that name goes in the user's folder.
+
+    Raises:
+        InputError: there is one of that name already, or it can be none.
+    """
     if kind not in kinds():
         raise InputError(f"{kind}: no such kind of file; {instead(kind, kinds())}")
     if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
@@ -47,17 +62,16 @@ def make(kind: str, name: str, source: str) -> Path:
     if is_word_of_yaml(name):
         raise InputError(f"{name}: YAML takes it for something else; give another name")
     there = named_files(kind)
-    if source not in there:
-        raise InputError(f"--from={source}: no such {kind}; {instead(source, there)}")
     if name in there:
         raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
-    text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
-    text = _NAME.sub(f"name: {name}", text, count=1)
-    folder = own_dir() or Path("conf")
-    path = folder / kind / f"{name}.yaml"
+    return (own_dir() or Path("conf")) / kind / f"{name}.yaml"
+
+
+def write(path: Path, text: str) -> Path:
+    """Write a file of the user's folder, which is marked as one."""
+    folder = path.parent.parent
     with files.folder(path.parent, linked=True):
         if own_dir() is None and not is_shipped(folder) and not (folder / MARK).exists():
             files.replace(folder / MARK, MARKED.encode())
-        copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"
-        files.replace(path, (text if text.startswith("# @") else copied + text).encode())
+        files.replace(path, text.encode())
     return path

@@ -149,6 +149,16 @@ CASES = {
         ("start=still",),
         r"start\.(?!postures\.(right|head)\.).*",  # the others are of backward and log rolls
     ),
+    "known state": Case(
+        (
+            "start=rest",
+            "+start.state={place:[0.5,0.1],gap:0.05,orientation:[0.9,0.1,0.2,0.1],"
+            "velocity:[0.5,0.1,-0.1],angular_velocity:[0.3,2.0,0.2],pose:{hip_y:1.0},"
+            "speeds:{knee_l:1.0}}",
+        ),
+        r"start\..*",
+        seconds=0.05,
+    ),
     "lockstep": Case(
         ("physics=lockstep",),
         r"physics\..*",

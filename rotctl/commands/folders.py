@@ -1,9 +1,18 @@
 """One's own files and results: `new`, `inspect-model`, `ls`, `diff`."""
 
 import argparse
+import os
 from pathlib import Path
 
-from rotctl.commands.arguments import RUNS, Commands, role_and_name, run_folder
+from rotctl.commands.arguments import (
+    LOG_HELP,
+    RUNS,
+    Commands,
+    log_file,
+    role_and_name,
+    run_folder,
+    second,
+)
 from rotctl.errors import InputError
 from rotctl.wording import one_line, printable
 
@@ -15,12 +24,17 @@ def add_new(commands: Commands) -> None:
         help="a behaviour, character, terrain, ... of your own",
         description="Copy a choice with its comments under another name into your own folder of "
         "configs, ./conf or --config-dir, as in: rotctl new behaviour my_roll --from "
-        "reference_roll. It is a choice like any other then.",
+        "reference_roll. It is a choice like any other then. A start may also be the state that a "
+        "run was in: rotctl new start my_fall --from RUN --at 12.5.",
     )
     command.add_argument("kind", metavar="KIND", help="a group of rotctl list, or motion, tune, "
                          "experiments")  # fmt: skip
     command.add_argument("name", metavar="NAME")
-    command.add_argument("--from", dest="source", required=True, metavar="CHOICE")
+    command.add_argument("--from", dest="source", required=True, metavar="CHOICE",
+                         help="that is copied; of a start also " + LOG_HELP)  # fmt: skip
+    command.add_argument(
+        "--at", type=second, metavar="S", help="of a run, when [s]; the last row if not said"
+    )
     command.set_defaults(command=new, interrupted="an unfinished file is not written")
 
 
@@ -28,8 +42,24 @@ def new(arguments: argparse.Namespace) -> int:
     """Begin a file of one's own."""
     from rotctl.own_folder import make
 
-    print(make(arguments.kind, arguments.name, arguments.source))
+    kind, name, source, at = arguments.kind, arguments.name, arguments.source, arguments.at
+    if kind == "start" and _is_run(source):
+        from rotctl.log import RunLog
+        from rotctl.recorded_start import make as recorded
+
+        print(recorded(name, RunLog.open(log_file(Path(source))), at))
+        return 0
+    if at is not None:
+        raise InputError(f"--at={at:g}: is a time of a run, and --from={source} is none")
+    print(make(kind, name, source))
     return 0
+
+
+def _is_run(source: str) -> bool:
+    """Whether it names a run and no start."""
+    from rotctl.listing import choices
+
+    return source not in choices("start") and os.path.lexists(run_folder(Path(source)))
 
 
 def add_inspect_model(commands: Commands) -> None:

@@ -19,7 +19,7 @@ from rotctl.mechanics.state import State
 from rotctl.mechanics.terrain import Ground
 from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces
-from rotctl.simulation.start import Start, place
+from rotctl.simulation.start import Start, beginning, place
 from rotctl.simulation.stepping import Stepper
 
 INITIAL_BLEND = 0.5  # gamma before the first decision: no preference
@@ -132,6 +132,7 @@ class Episode:
         self.memory: Any = None
         self.blend, self.phase = INITIAL_BLEND, nan
         self.data = parts.data(parts.model.mj)
+        self._pitch = beginning(parts.start, parts.behaviour)
         usual = parts.behaviour.start(parts.start.pitch)
         place(parts.model, self.data, parts.start, usual, parts.behaviour.axes)
 
@@ -162,7 +163,7 @@ class Episode:
             return None
         before = self.memory
         if before is None:
-            before = behaviour.begin(parts.start.pitch, state)
+            before = behaviour.begin(self._pitch, state)
         self.memory = memory = behaviour.advance(before, state)
         command = behaviour.command(memory, state)
         signals = behaviour.signals(memory, state)

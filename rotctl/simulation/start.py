@@ -3,23 +3,25 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import atan, cos, sin, sqrt, tan
+from typing import Any
 
 import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours.behaviour import Placement
+from rotctl.behaviours.behaviour import Behaviour, Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
-from rotctl.mechanics.bodies import ROOT_BODY, is_character
-from rotctl.mechanics.hulls import hulls, places
+from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, advance, cross, dot
-from rotctl.settings import STRICT, Finite, NonNegative, Range
+from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Range
 from rotctl.simulation import aloft as spawned
 from rotctl.simulation import falling as falls
 from rotctl.simulation.aloft import AloftSettings
+from rotctl.simulation.clearance import clearance
 from rotctl.simulation.falling import FallingSettings
+from rotctl.simulation.known import Known, StateSettings, pitch
 
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
@@ -50,7 +52,8 @@ class StartSettings:
         scatter: how far each joint may be from its posture, either way [rad].
         tilt: how far the whole body may be turned about any axis [rad].
         falling: in the air, instead of on the ground; or
-        aloft: high in it.
+        aloft: high in it; or
+        state: known to the last number, to which the ranges above are added.
     """
 
     name: str
@@ -65,10 +68,11 @@ class StartSettings:
     tilt: NonNegative = 0.0
     falling: FallingSettings | None = None
     aloft: AloftSettings | None = None
+    state: StateSettings | None = field(default=None, metadata=SPARSE)
     description: str = ""
 
     def __post_init__(self) -> None:
-        own = [name for name in ("falling", "aloft", "postures") if getattr(self, name)]
+        own = [name for name in ("falling", "aloft", "state", "postures") if getattr(self, name)]
         if len(own) > 1:
             raise ValueError(f"{own[0]} has its own pose, and there is {own[1]}")
         if (self.scatter or self.tilt) and not own:
@@ -88,6 +92,8 @@ class Start:
         gap: between its lowest point and the ground [m].
         height: of the centre of mass over what is below it, instead of a gap [m].
         ahead: of the origin [m].
+        known: a state that the rest is beside: turned by `pitch` and `tilt`, faster by `velocity`
+            and `angular_velocity`, with the joints at `pose`.
     """
 
     pitch: float
@@ -98,6 +104,7 @@ class Start:
     gap: float = 0.0
     height: float = 0.0
     ahead: float = 0.0
+    known: Known | None = None
 
 
 def draw(
@@ -130,6 +137,8 @@ def draw(
         return _falling(settings, settings.falling, model, start, generator)
     if settings.aloft:
         return _aloft(settings, settings.aloft, model, start, generator)
+    if settings.state:
+        return _known(settings, settings.state, model, start, generator)
     if not settings.postures:
         return start
     if roll_about not in settings.postures:
@@ -182,12 +191,28 @@ def _aloft(
     return _scattered(settings, model, flies, pose, generator)
 
 
+def _known(
+    settings: StartSettings,
+    state: StateSettings,
+    model: Model,
+    start: Start,
+    generator: np.random.Generator,
+) -> Start:
+    pose = _pose(model, state.pose, "start.state.pose")
+    speeds = _pose(model, state.speeds, "start.state.speeds")
+    beside = _scattered(settings, model, start, pose, generator)
+    return replace(beside, gap=state.gap, known=Known(state, speeds))
+
+
 def _scattered(
     settings: StartSettings, model: Model, start: Start, pose: Array, generator: np.random.Generator
 ) -> Start:
+    low, high = model.joint_range.T
+    if settings.state:  # where a joint may be beyond its stop, which is soft
+        low, high = np.minimum(low, pose), np.maximum(high, pose)
     pose = pose + generator.uniform(-settings.scatter, settings.scatter, len(pose))
     tilt = _tilt(settings.tilt, generator)
-    return replace(start, pose=np.clip(pose, *model.joint_range.T), tilt=tilt)
+    return replace(start, pose=np.clip(pose, low, high), tilt=tilt)
 
 
 def _tilt(largest: float, generator: np.random.Generator) -> Array:
@@ -205,6 +230,12 @@ def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     return pose
 
 
+def beginning(start: Start, behaviour: Behaviour[Any]) -> float:
+    """The pitch at which a behaviour begins [rad]."""
+    known = start.known
+    return start.pitch if known is None else start.pitch + pitch(known, behaviour)
+
+
 def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axes: Array) -> None:
     """Put the character on the ground, moving. On a slope, its velocity is along the slope.
 
@@ -213,10 +244,15 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
         axes: (3, 3) rows are the behaviour's forward, left and up; the start's velocities are
             along them.
     """
-    mj = model.mj
+    mj, known = model.mj, start.known
     mujoco.mj_resetData(mj, data)
     data.qpos[model.angles] = usual.pose if start.pose is None else start.pose
-    data.qpos[3:7] = advance(usual.orientation, product(start.tilt, axes))
+    if known is None:
+        data.qpos[3:7] = advance(usual.orientation, product(start.tilt, axes))
+    else:
+        turn = start.tilt + np.array([0.0, start.pitch, 0.0])
+        data.qpos[:2] = known.settings.place
+        data.qpos[3:7] = advance(known.orientation, product(turn, axes))
     mujoco.mj_kinematics(mj, data)
     if start.height:
         mujoco.mj_comPos(mj, data)
@@ -224,7 +260,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
         place[2] = model.ground.height(*place[:2].tolist()) + start.height
         data.qpos[:3] += place - data.subtree_com[ROOT_BODY]
     else:
-        data.qpos[2] += (start.gap or -SINK) - _clearance(model, data)
+        data.qpos[2] += (start.gap or -SINK) - clearance(model, data)
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[ROOT_BODY] - data.subtree_com[ROOT_BODY]
@@ -234,23 +270,7 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
     spin = product(start.angular_velocity, axes)
     data.qvel[:3] = velocity + cross(spin, offset)
     data.qvel[3:6] = product(spin, data.xmat[ROOT_BODY].reshape(3, 3))
-
-
-def _clearance(model: Model, data: mujoco.MjData) -> float:
-    """How far the character can be lowered before it touches the ground [m]."""
-    mj, ground = model.mj, model.ground
-    solid = is_character(mj)[mj.geom_bodyid] & (mj.geom_contype > 0)
-    geoms = np.flatnonzero(solid & (mj.geom_type != mujoco.mjtGeom.mjGEOM_MESH))
-    length = mj.geom_size[geoms, 1] * (mj.geom_type[geoms] == mujoco.mjtGeom.mjGEOM_CAPSULE)
-    half = length[:, None] * data.geom_xmat[geoms, 2::3]
-    ends = np.stack((data.geom_xpos[geoms] + half, data.geom_xpos[geoms] - half), axis=1)
-    least = np.inf
-    for radius, both in zip(mj.geom_size[geoms, 0].tolist(), ends.tolist(), strict=True):
-        for x, y, z in both:
-            # A sphere on the plane that touches the ground below its centre.
-            upright = float(ground.normal(x, y)[2])
-            least = min(least, z - ground.height(x, y) - radius / upright)
-    for geom in hulls(mj):
-        for x, y, z in places(mj, data, geom).tolist():
-            least = min(least, z - ground.height(x, y))
-    return float(least)
+    if known is not None:
+        data.qvel[:3] += known.settings.velocity
+        data.qvel[3:6] += known.settings.angular_velocity
+        data.qvel[model.joints] = known.speeds
