@@ -9,6 +9,7 @@ import numpy as np
 import yaml
 
 from rotctl import own_folder
+from rotctl.checked import brief
 from rotctl.config import recorded
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
@@ -48,7 +49,8 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
         **{key: [0.0, 0.0] for key in RANGES},
         "state": state,
     }
-    head = f"# From the run {log.attributes['run_id']}, at {seconds}; see docs/getting_up.md\n"
+    run = brief(log.attributes["run_id"])  # a stranger's text, which must not end the comment
+    head = f"# From the run {run}, at {seconds}; see docs/getting_up.md\n"
     text = yaml.safe_dump(data, sort_keys=False, default_flow_style=None, width=100)
     return own_folder.write(path, head + text)
 

@@ -74,7 +74,7 @@ def beside(state=STATE, **given):
 def test_a_run_begins_where_another_one_was(recorded, here):
     """To rounding: every angle and every speed, over the same hills."""
     path = make("there", recorded, 0.5)
-    assert path.read_text().startswith(f"# From the run {recorded.attributes['run_id']}, at 0.50 s")
+    assert path.read_text().startswith(f'# From the run "{recorded.attributes["run_id"]}", at 0.50 s')
     same_hills = ("terrain=uneven", "terrain.run_in=0", "seed=3")
     _, data = started("behaviour=get_up", "start=there", *same_hills, folder=here)
     assert data.qpos == pytest.approx(recorded["trajectory/qpos"][ROW], abs=1e-12)
@@ -210,6 +210,13 @@ def test_a_run_that_broke_down_says_so(recorded, here, tmp_path):
     with pytest.raises(LogError, match="its state there is not finite"):
         make("there", broken, None)
     make("before", broken, 0.5)
+
+
+def test_a_strangers_name_of_a_run_stays_in_its_comment(recorded, here, tmp_path):
+    strange = with_arrays(recorded, tmp_path, run_id="x\npitch: [1.0, 1.0]")
+    path = make("there", strange, None)
+    assert yaml.safe_load(path.read_text())["pitch"] == [0.0, 0.0]
+    assert path.read_text().startswith('# From the run "x\\npitch: [1.0, 1.0]", at ')
 
 
 def test_a_log_whose_states_are_of_another_body_is_refused(recorded, here, tmp_path):
