@@ -74,7 +74,9 @@ def beside(state=STATE, **given):
 def test_a_run_begins_where_another_one_was(recorded, here):
     """To rounding: every angle and every speed, over the same hills."""
     path = make("there", recorded, 0.5)
-    assert path.read_text().startswith(f'# From the run "{recorded.attributes["run_id"]}", at 0.50 s')
+    assert path.read_text().startswith(
+        f'# From the run "{recorded.attributes["run_id"]}", at 0.50 s'
+    )
     same_hills = ("terrain=uneven", "terrain.run_in=0", "seed=3")
     _, data = started("behaviour=get_up", "start=there", *same_hills, folder=here)
     assert data.qpos == pytest.approx(recorded["trajectory/qpos"][ROW], abs=1e-12)
