@@ -78,6 +78,7 @@ PACED = ("behaviour=forward_roll", "duration=2", "seed=2003")
         (*PACED, "behaviour.pace.schedule=[[0.5,0.3],[1.0,1.2]]"),
         (*PACED, "behaviour.pace.schedule=[[0.3,0],[1.5,0.8]]", "behaviour.pace.easing=1"),
         ("excursion=integral", "duration=1"),
+        ("+behaviour.oblique=[12,5,-3,2,1]", "duration=1"),
         ("behaviour.poses.a.knee=[1.9,0.1,-0.2,0.1,0.1,-0.05,0.07]", "duration=1"),
         ("behaviour.angular_momentum=30", "duration=1"),
         ("controller.supervisor=modified", "duration=1"),
@@ -122,7 +123,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),
         *("align_with_slope", "poses", "reference", "angular_momentum", "pace", "finish"),
-        *("course", "catch"),
+        *("course", "catch", "oblique"),
         *("source", "description"),
     }
 

@@ -135,6 +135,7 @@ CASES = {
         r"behaviour\.catch\..*",
         seconds=1.5,
     ),
+    "oblique": Case(("+behaviour.oblique=[12,5,-3]",), r"behaviour\.oblique.*"),
     "path": Case(
         ("behaviour=forward_roll", "+course=slalom", "behaviour.course.legs=[[0.3,10],[0.3,-5]]"),
         r"behaviour\.course\..*",

@@ -1,6 +1,7 @@
 """A roll in C: its constants as `native/roll.c` takes them, and its memory to and fro."""
 
 import ctypes
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -94,6 +95,11 @@ class CompiledRoll:
         there, given = self.constants, catch.settings
         there.catch_gain, there.catch_free, there.catch_most = given.gain, given.free, given.most
         there.catch_motor[:], there.catch_high[:] = catch.motors, catch.high
+
+    def add_oblique(self, oblique: Sequence[float]) -> None:
+        """Keep an oblique axis of the trunk, see `Oblique` [deg]."""
+        self.constants.oblique_waves = len(oblique)
+        self.constants.oblique[: len(oblique)] = oblique
 
     def _at(self, array: Any) -> int:
         self._kept.append(array)

@@ -7,6 +7,7 @@ with the way, and a pace has a clock of how far the roll is behind.
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from rotctl.behaviours import obliqueness
 from rotctl.behaviours.bearing import Bearing, Bearings
 from rotctl.behaviours.course import Course, Going
 from rotctl.behaviours.facing import UP
@@ -63,6 +64,7 @@ class Remembering:
         self._axes = self._bearing.frame.axes
         self._course = settings.course.make() if settings.course is not None else None
         self._measured, self._period, self._pace = measured, period, pace
+        self._oblique = settings.oblique
         self._rate = math.tau * settings.angular_velocity
         given = settings.pace
         self._travel = given.travel if given is not None and given.keep == "speed" else 0.0
@@ -72,7 +74,7 @@ class Remembering:
         on, com = self._bearing, state.momentum.com
         line = com - dot(on.left, com) * on.left if self._course is None else com
         now = excursion.start(pitch, on.left)
-        axis = on.frame.axis(state.trunk_axes)
+        axis = self._axis(on, state, pitch)
         memory = RollingMemory(now, line, now.angle, axis, on)
         return memory._replace(clock=Clock(self._come(memory, state)))
 
@@ -84,7 +86,7 @@ class Remembering:
             turn = past.course.turned - before.course.turned
             spin = spin - turn / self._period * UP  # that is left to who turns along
         on = past.bearing
-        axis = on.frame.axis(state.trunk_axes)
+        axis = self._axis(on, state, past.excursion.phase)
         now = excursion.integrate(
             past.excursion, spin, axis, on.left, self._period, self._measured.correction_time
         )
@@ -107,6 +109,11 @@ class Remembering:
             return state.momentum.com
         x, y = memory.course.place
         return memory.origin + x * self._axes[0] + y * self._axes[1]
+
+    def _axis(self, on: Bearing, state: State, phase: float) -> Array:
+        """The trunk's axis (3,) that should stay on the rolling axis, unit, world."""
+        trunk = state.trunk_axes
+        return obliqueness.axis(on.frame.axis(trunk), trunk[:, 2], self._oblique, phase)
 
     def _turned(self, before: RollingMemory, state: State) -> RollingMemory:
         """What it remembers, turned with its way."""

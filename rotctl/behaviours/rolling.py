@@ -65,7 +65,7 @@ class Rolling:
         self._bearing = bearings.at(0.0)
         self.axes = axes = self._bearing.frame.axes
         self._measured, self._follows = measured, settings.course is not None
-        self._period = 1.0 / control.rate
+        self._period, self._oblique = 1.0 / control.rate, settings.oblique
         self._rate, self._speed = 2.0 * math.pi * settings.angular_velocity, settings.speed
         given = settings.pace
         self._pace = (
@@ -84,7 +84,7 @@ class Rolling:
             raise InputError(
                 "behaviour.angular_momentum: excursion=root controls the root's angular velocity"
             )
-        for part in ("pace", "course"):
+        for part in ("pace", "course", "oblique"):
             if getattr(settings, part) and measured.measure == "root":
                 raise InputError(
                     f"behaviour.{part}: excursion=root controls the root's angular velocity"
@@ -198,6 +198,8 @@ class Rolling:
             self._poses,
             self._tasks,
         )
+        if self._oblique is not None:
+            made.add_oblique(self._oblique)
         if self._catch is not None:
             made.add_catch(self._catch)
         if self._pace:

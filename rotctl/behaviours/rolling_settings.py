@@ -9,6 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import Finishing, FinishSettings
+from rotctl.behaviours.obliqueness import Oblique
 from rotctl.behaviours.pacing import Halts, PaceSettings
 from rotctl.behaviours.rolling import Rolling
 from rotctl.behaviours.stages import kinds_of
@@ -45,6 +46,8 @@ class RollingSettings:
         finish: how a roll with a pace ends.
         course: where it goes from its heading; straight on by default.
         catch: what catches it where it tips over its side; nothing by default.
+        oblique: how far the axis that is kept lies from there towards the head, over the phase, see
+            `Oblique` [deg]; not at all by default.
     """
 
     name: str
@@ -61,6 +64,7 @@ class RollingSettings:
     finish: FinishSettings | None = None
     course: CourseSettings | None = None
     catch: CatchSettings | None = None
+    oblique: Oblique | None = None
     source: str = ""
     description: str = ""
 
@@ -82,6 +86,10 @@ class RollingSettings:
             raise ValueError("a course commands velocities: give no angular_momentum")
         if self.catch and self.roll_about == "head":
             raise ValueError("a roll about its head lies on its side, and has nothing to catch")
+        if self.oblique and self.roll_about == "head":
+            raise ValueError(
+                "an oblique axis lies between left or right and the head: roll_about=head has none"
+            )
 
     @property
     def commanded(self) -> dict[str, float]:

@@ -1,7 +1,15 @@
 """Poses to track: key poses or a reference clip over the phase of a cycle."""
 
 from rotctl.motion.clip import Clip, RollAbout, load_clip
-from rotctl.motion.pose_pair import Angle, PosePair, Poses, Turn, make_pose, make_pose_pair
+from rotctl.motion.pose_pair import (
+    Angle,
+    PosePair,
+    Poses,
+    Turn,
+    make_pose,
+    make_pose_pair,
+    pairs_after_a_mean,
+)
 from rotctl.motion.reference import ReferencePair, ReferenceSettings, make_reference_pair
 
 __all__ = [
@@ -17,4 +25,5 @@ __all__ = [
     "make_pose",
     "make_pose_pair",
     "make_reference_pair",
+    "pairs_after_a_mean",
 ]

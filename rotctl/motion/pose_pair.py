@@ -24,7 +24,12 @@ from rotctl.settings import STRICT, Finite
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
 
 
-def _pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
+def pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
+    """Such numbers over the phase, as they are.
+
+    Raises:
+        ValueError: they are no mean with pairs after it.
+    """
     if len(waves) % 2 == 0:
         raise ValueError(f"must be a mean with pairs of cosine and sine, not {len(waves)} numbers")
     return waves
@@ -37,7 +42,7 @@ def _form(angle: object) -> str:
 Waves = Annotated[
     tuple[Turn, ...],
     Field(min_length=3, max_length=constant("WAVES")),
-    AfterValidator(_pairs_after_a_mean),
+    AfterValidator(pairs_after_a_mean),
 ]
 Angle = Annotated[
     Annotated[Turn, Tag("turn")] | Annotated[Waves, Tag("waves")], Discriminator(_form)

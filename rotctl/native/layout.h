@@ -108,8 +108,8 @@ typedef struct {
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
-  double catch_gain, catch_free, catch_most, catch_high[2];
-  int column, integral, rows, waves, catch_motor[2];
+  double catch_gain, catch_free, catch_most, catch_high[2], oblique[WAVES];
+  int column, integral, rows, waves, oblique_waves, catch_motor[2];
   const double *table, *rise, *coefficients, *low, *high;
   const Pace* pace;
   Task* task;

@@ -4,6 +4,15 @@
 #include "rotations.h"
 #include "small.h"
 
+// behaviours/obliqueness.py: the trunk's axis that should stay on the rolling axis
+static void incline(const Roll* r, const double* trunk, RollMemory* it) {
+  double tilt = r->oblique[0];
+  for (int n = 1; 2 * n < r->oblique_waves; n++)
+    tilt += r->oblique[2 * n - 1] * cos(n * it->phase) + r->oblique[2 * n] * sin(n * it->phase);
+  tilt *= mjPI / 180;
+  for (int i = 0; i < 3; i++) it->axis[i] = cos(tilt) * it->axis[i] + sin(tilt) * trunk[3 * i + 2];
+}
+
 // `integrate` and `keep_phase`: the memory of one control period later.
 static void turn_along(const Roll* r, const Reading* now, RollMemory* it) {
   const double *left = r->axes + 3, *trunk = now->trunk_axes;
@@ -12,6 +21,7 @@ static void turn_along(const Roll* r, const Reading* now, RollMemory* it) {
     turn[i] = now->angular_velocity[i] * r->period;
     it->axis[i] = trunk[3 * i + r->column] * r->sign;
   }
+  if (r->oblique_waves) incline(r, trunk, it);
   turn_on(orientation, it->orientation, turn);
   turn_vector(carried, orientation, left);
   cross(off, carried, it->axis);

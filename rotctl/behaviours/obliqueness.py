@@ -1,0 +1,36 @@
+"""A roll about an oblique axis of the trunk: over one shoulder, across the back, to the other hip.
+
+Who rolls about its left axis goes over its head, which is furthest ahead where it is face down. Who
+rolls about an axis between left and up has its right shoulder ahead there, and comes off the back
+over its left hip: what bears it lies across the axis. (Towards the feet in place of the head, over
+the left shoulder.) In the squat such a body leans aside.
+"""
+
+from collections.abc import Sequence
+from math import cos, radians, sin
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from rotctl.motion import pairs_after_a_mean
+from rotctl.native.layout import constant
+from rotctl.rotations import Array
+from rotctl.settings import Finite
+
+Oblique = Annotated[
+    tuple[Annotated[Finite, Field(ge=-60, le=60)], ...],
+    Field(min_length=1, max_length=constant("WAVES")),
+    AfterValidator(pairs_after_a_mean),
+]
+"""From the left, or right, towards the head [deg]: mean, cosine and sine over the phase, ..."""
+
+
+def axis(side: Array, up: Array, oblique: Sequence[float] | None, phase: float) -> Array:
+    """The axis (3,) at a phase [rad], unit, between a trunk's `side` and `up` (3,), unit."""
+    if oblique is None:
+        return side
+    total = oblique[0]
+    for n in range(1, len(oblique) // 2 + 1):
+        total += oblique[2 * n - 1] * cos(n * phase) + oblique[2 * n] * sin(n * phase)
+    tilt = radians(total)
+    return cos(tilt) * side + sin(tilt) * up
