@@ -72,7 +72,8 @@ class Remembering:
     def begin(self, pitch: float, state: State) -> RollingMemory:
         """Memory at the start: phi_0 is the pelvis's pitch against the slope [rad]."""
         on, com = self._bearing, state.momentum.com
-        line = com - dot(on.left, com) * on.left if self._course is None else com
+        aside = dot(on.left, com - state.position[:3])  # of the pelvis, through which its line goes
+        line = com - aside * on.left if self._course is None else com
         now = excursion.start(pitch, on.left)
         axis = self._axis(on, state, pitch)
         memory = RollingMemory(now, line, now.angle, axis, on)
