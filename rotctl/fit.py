@@ -50,7 +50,7 @@ def _require_judged(
 ) -> None:
     wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
     if isinstance(behaviour, ChainSettings):
-        wanted = ["chain"]
+        wanted = ["getting_up"] if behaviour.again else ["chain", "getting_up"]
     if isinstance(behaviour, RollingSettings):
         wanted = ["rolling"] if behaviour.finish is None else ["finish"]
     if criteria.kind not in wanted:

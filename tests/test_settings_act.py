@@ -211,6 +211,7 @@ CASES = {
         ("behaviour=get_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
     ),
     "reaching": Case(("behaviour=get_up",), r"behaviour\.stages\.1\.reach\.seconds"),
+    "again": Case(("behaviour=rock_up", "seed=2012"), r"behaviour\.again", seconds=2.2),
     "striding into a cartwheel": Case(
         ("behaviour=cartwheel",),
         r"behaviour\.stages\.1\.(until\.after|tasks\.(carry|stride)\.aim\.(?!law).*)",

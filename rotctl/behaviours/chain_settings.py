@@ -1,6 +1,6 @@
 """What a chain of behaviours is told."""
 
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -14,7 +14,7 @@ from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings import MOST_PARTS, STRICT
+from rotctl.settings import MOST_PARTS, SPARSE, STRICT, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -65,12 +65,15 @@ class ChainSettings:
     Attributes:
         parts: in their order.
         rest: what ends a part whose last stage has no condition.
+        again: who lies lower than that in the last stage of all begins with the first part again
+            [m]; the centre of mass over the ground. Nobody does if None.
     """
 
     name: str
     kind: Literal["chain"]
     parts: Annotated[tuple[PartSettings, ...], Field(min_length=1, max_length=MOST_PARTS)]
     rest: RestSettings
+    again: Positive | None = field(default=None, metadata=SPARSE)
     source: str = ""
     description: str = ""
 

@@ -126,8 +126,17 @@ class Chain:
         inner = behaviour.advance(before.inner, _since(before, state))
         rested = before.rested + self._period if self._rests(before, state) else 0.0
         memory = before._replace(inner=inner, rested=rested)
-        last = before.part + 1 == len(self._settings.parts)
-        return memory if last or not self._over(memory, state) else self._next(memory, state)
+        following = self._following(memory, state)
+        return memory if following is None else self._begun(following, memory, state)
+
+    def _following(self, memory: ChainMemory, state: State) -> int | None:
+        """The part that begins now, if one does."""
+        if memory.part + 1 < len(self._settings.parts):
+            return memory.part + 1 if self._over(memory, state) else None
+        again, part = self._settings.again, self._part(memory)
+        if again is None or isinstance(part, Rolling) or not part.at_last(memory.inner):
+            return None
+        return 0 if self._height(state) < again else None
 
     def _over(self, memory: ChainMemory, state: State) -> bool:
         part = self._part(memory)
@@ -137,11 +146,10 @@ class Chain:
         rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period
         return rested and part.at_last(memory.inner) if own is None else own
 
-    def _next(self, memory: ChainMemory, state: State) -> ChainMemory:
-        number = memory.part + 1
+    def _begun(self, number: int, memory: ChainMemory, state: State) -> ChainMemory:
         settings = self._settings.parts[number].behaviour
         about = settings.roll_about
-        heading = self._facing(state) + (180.0 if about == "right" else 0.0)
+        heading = self._facing(memory, state) + (180.0 if about == "right" else 0.0)
         frame = frame_of(about, heading, getattr(settings, "turn_about", "left"))
         begun = ChainMemory(number, None, heading, state.time, self._height(state))
         behaviour: Behaviour[Any] = self._part(begun)
@@ -163,9 +171,16 @@ class Chain:
             and self._height(state) > rest.height * memory.height
         )
 
-    def _facing(self, state: State) -> float:
-        """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they."""
+    def _facing(self, memory: ChainMemory, state: State) -> float:
+        """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they.
+
+        With no foot on the ground, say on its back, it is where the part that ends was heading.
+        """
         fronts = [forward(state, foot) for foot in sorted(self._feet)]
+        if self._feet.isdisjoint(state.contacts.body.tolist()):
+            behaviour: Behaviour[Any] = self._part(memory)
+            x, y, _ = behaviour.signals(memory.inner, _since(memory, state)).axes[0].tolist()
+            fronts = [(x, y)]
         return degrees(atan2(fsum(y for _, y in fronts), fsum(x for x, _ in fronts)))
 
     def _height(self, state: State) -> float:

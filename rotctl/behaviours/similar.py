@@ -10,7 +10,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from rotctl.behaviours.balance import Capture, Lunge
-from rotctl.behaviours.chain_settings import PartSettings
+from rotctl.behaviours.chain_settings import ChainSettings, PartSettings
 from rotctl.behaviours.chaining import RestSettings
 from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight_settings import FlightSettings
@@ -24,7 +24,7 @@ from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.touching import Airborne, Launched, Touches
-from rotctl.behaviours.until import After, Leaves, Low, Over, Passed, Still
+from rotctl.behaviours.until import After, Leaves, Low, Near, Over, Passed, Still
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.similar import similar_gains
 from rotctl.mechanics.stature import Likeness
@@ -102,6 +102,7 @@ UNITS: Units = {
     Above: all_of(length, "ahead", "height", "most"),
     Opposite: all_of(length, "ahead", "height"),
     Low: all_of(length, "height"),
+    Near: all_of(speed, "speed"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LevellingSettings: all_of(time, "interval"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
@@ -109,6 +110,7 @@ UNITS: Units = {
     | all_of(rate, "own", "settling")
     | all_of(speed, "easing"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
+    ChainSettings: all_of(length, "again"),
     RestSettings: all_of(time, "seconds") | all_of(speed, "speed"),
 }
 """Of settings, what has a unit that grows; `TaskSettings.point` has one for points."""

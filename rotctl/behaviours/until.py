@@ -1,5 +1,6 @@
 """When a stage ends: a small closed set of conditions on the state."""
 
+from dataclasses import field
 from math import atan2, radians
 from typing import Annotated, Literal
 
@@ -14,7 +15,7 @@ from rotctl.behaviours.wheeling import beyond
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
 from rotctl.rotations import dot
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -58,16 +59,24 @@ class Turned:
 
 @validated(frozen=True, config=STRICT)
 class Near:
-    """So near to the behaviour's target, on either side [deg]."""
+    """So near to the behaviour's target, on either side [deg], and calm.
+
+    Attributes:
+        speed: of the centre of mass, at most [m/s]; any if None.
+    """
 
     kind: Literal["near"]
     angle: NonNegative
+    speed: Positive | None = field(default=None, metadata=SPARSE)
 
     def check(self, model: Model) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
+        velocity = scene.state.momentum.com_velocity
+        if self.speed is not None and dot(velocity, velocity) > self.speed**2:
+            return False
         return abs(scene.target - scene.turned) <= radians(self.angle)
 
 
