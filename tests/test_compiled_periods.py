@@ -94,13 +94,14 @@ def test_every_number_of_a_pace_acts_alike(both):
     """All of them others, late and early: one that C takes for another would be seen."""
     pace, rng = load(list(PACED)).behaviour.pace, np.random.default_rng(3)
     changed = {name: getattr(pace, name) * rng.uniform(0.7, 1.0) for name in PACE}
-    changed |= {"brake": 1.2 * pace.brake, "most": 1.02}
+    changed |= {"brake": 1.2 * pace.brake, "most": 1.02, "back": 0.05}
     assert len(set(changed.values())) == len(PACE)
     both(
         *PACED,
         "behaviour.angular_velocity=1.3",
         "behaviour.pace.schedule=[[0.8,0.2]]",
         "behaviour.pace.settling=[2.5,3.5]",
+        "behaviour.pace.approach=0.2",
         *(f"behaviour.pace.{name}={value}" for name, value in changed.items()),
     )
 
@@ -118,7 +119,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     """Whoever adds a setting gives it to C, or has `Rolling.compiled` refuse it."""
     assert {field.name for field in fields(PaceSettings)} == {
         *PACE,
-        *("keep", "over", "settling", "schedule", "easing"),
+        *("keep", "over", "settling", "schedule", "easing", "approach"),
     }
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),

@@ -64,7 +64,7 @@ def test_what_is_commanded_quicker_than_its_own_pace_flows_quicker():
 
 def test_early_it_waits_over_its_feet():
     here = wanted(0.05, late=-0.4, ahead=0.1)
-    assert here == pytest.approx((0.0, 0.0, 5.0), abs=1e-12)
+    assert here == pytest.approx((0.0, 0.0, 5.0, 0.0), abs=1e-12)
     behind = wanted(0.05 - 0.02, late=-0.4, ahead=-0.1)
     assert behind.rate == pytest.approx(4.0 * 0.02, rel=0.1)
     assert behind.speed == pytest.approx(3.0 * 0.2, rel=0.1)
@@ -75,6 +75,21 @@ def test_early_it_waits_over_its_feet():
 def test_early_it_is_calmer_and_does_not_wait_on_its_back():
     assert wanted(0.55, late=-0.4).rate == pytest.approx(0.75 * wanted(0.55).rate)
     assert wanted(0.55, late=-0.4).brake == 1.0
+
+
+def test_it_is_braked_on_the_way_up_from_the_seat_only_so_far_before_as_is_asked():
+    late, up, over = -0.4, 0.05 - 0.2, 0.05 + 0.2
+    assert wanted(up, late).brake > 1.9
+    assert wanted(up, late, approach=0.2).brake == 1.0
+    assert wanted(0.05 - 0.1, late, approach=0.2).brake == pytest.approx(3.0)  # half-way to 5
+    assert wanted(over, late, approach=0.2) == wanted(over, late)
+    assert wanted(up, 0.1, approach=0.01) == wanted(up, 0.1), "it hurries there as before"
+
+
+def test_its_poses_go_back_as_far_as_it_waits():
+    assert wanted(0.05, late=-0.4, back=0.12).back == pytest.approx(0.12)
+    assert wanted(0.05, late=-0.125, back=0.12).back == pytest.approx(0.06)
+    assert wanted(0.05, late=0.1, back=0.12).back == wanted(0.55, late=-0.4, back=0.12).back == 0.0
 
 
 def test_late_it_hurries_where_it_else_waits():
@@ -101,6 +116,12 @@ def test_it_does_not_run_away_from_a_roll_that_stalls_or_flies(pace, late):
     assert clock.late == late
 
 
+def test_what_it_is_ahead_beyond_its_patience_is_not_waited_for():
+    pace, clock = Pace(replace(SETTINGS, patience=0.2), 0.5, 9.0), Clock(0.0)
+    assert pace.tick(clock, 0.7, PERIOD, PERIOD) == pytest.approx((0.5, -0.2))
+    assert pace.tick(clock, -9.0, PERIOD, PERIOD).late == SLIP
+
+
 def test_the_master_is_the_rate_or_the_speed():
     assert Pace(SETTINGS, 0.5, 9.0).commanded(0.0) == 0.5
     assert Pace(replace(SETTINGS, keep="speed"), 0.5, 1.2).commanded(0.0) == 0.6
@@ -120,7 +141,7 @@ def test_a_schedule_takes_over_at_its_times():
 
 def test_at_a_command_of_nothing_it_waits_at_once_and_goes_on_at_once():
     pace = Pace(replace(SETTINGS, schedule=((2.0, 0.0), (5.0, 0.6))), 0.6, 0.0)
-    assert pace.at(tau * 0.05, 0.1, 0.0, 3.0) == pytest.approx((0.0, 0.0, 5.0), abs=1e-12)
+    assert pace.at(tau * 0.05, 0.1, 0.0, 3.0) == pytest.approx((0.0, 0.0, 5.0, 0.0), abs=1e-12)
     clock = Clock(7.0, 0.3)
     for row in range(120, 301):  # nothing is made good after a halt
         clock = pace.tick(clock, 6.8, row * PERIOD, PERIOD)

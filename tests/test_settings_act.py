@@ -88,6 +88,9 @@ CASES = {
         r"behaviour\.pace\.(?!most|travel|easing).*",
         seconds=2.5,
     ),
+    "pace that waits down a slope": Case(
+        ("behaviour=decline",), r"behaviour\.pace\.(approach|back|patience)", seconds=2.5
+    ),
     "pace that halts": Case(
         ("behaviour=forward_roll", "behaviour.pace.schedule=[[0.2,0]]"),
         r"behaviour\.pace\.easing",

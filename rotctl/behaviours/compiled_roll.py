@@ -17,7 +17,7 @@ from rotctl.rotations import Array
 
 PACE = (  # its settings that C takes as they are
     *("travel", "own", "calm", "swing", "swing_from", "surge", "surge_from", "wait", "width"),
-    *("ahead", "brake", "gain", "most"),
+    *("back", "ahead", "brake", "gain", "most", "patience"),
 )
 
 
@@ -81,6 +81,7 @@ class CompiledRoll:
             changes=len(pace.times),
             count=len(over),
             easing=settings.easing or 0.0,
+            approach=settings.approach or settings.width,
             times=self._at(np.array(pace.times, float)),
             rates=self._at(np.array(pace.rates, float)),
             over=self._at(np.array(over, np.int32)),

@@ -36,12 +36,17 @@ class PaceSettings:
             revolution, and the phase where it is slowest [-, rev].
         surge, surge_from: the same of the speed [-, rev].
         wait, width: phase in which it waits, and how far to either side it does not flow [rev].
+        approach: from so far before that phase on it waits, instead [rev]: who is braked on the
+            way up from the seat falls back onto it. None: `width`.
+        back: how far its poses go back while it waits [rev]. What leads a body that turns is, for
+            one that stands still, a pose in which its feet have left the ground.
         over: bodies over which it waits; a name without a side is both.
         ahead: of their middle, where the centre of mass then is [m].
         settling: rates at which it comes to that phase and that place [1/s].
         brake: how much stiffer the dampers along the way are while it waits [-].
         gain: of what is waited or made good, for a revolution that it is off the clock [1/rev].
         most: how much quicker it may go there [-].
+        patience: how far ahead of its clock it may be [rev]; the clock forgets what is beyond.
         easing: speed below which a halt brakes less and less [m/s]: stiff dampers stop who comes
             in, and let who stands there sink onto the seat. None: it brakes as in any wait.
         schedule: times and what is commanded from then on in place of the kept velocity
@@ -65,6 +70,9 @@ class PaceSettings:
     gain: NonNegative
     most: Annotated[Positive, Field(ge=1)]
     easing: Positive | None = None
+    approach: Annotated[Positive, Field(le=0.5)] | None = None
+    back: Annotated[NonNegative, Field(le=0.5)] = 0.0
+    patience: Annotated[Positive, Field(le=SLIP)] = SLIP
     schedule: Annotated[tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000)] = ()
 
     def __post_init__(self) -> None:
@@ -99,11 +107,13 @@ class Wanted(NamedTuple):
         rate: angular velocity [rev/s].
         speed: [m/s].
         brake: on the dampers along the way [-].
+        back: how far the poses stay behind [rev].
     """
 
     rate: float
     speed: float
     brake: float
+    back: float
 
 
 class Pace:
@@ -162,7 +172,7 @@ class Pace:
         if not asked:  # a halt: it goes on from where it is then
             return Clock(come)
         late = clock.due + asked * period - come
-        late = min(max(late, -SLIP), SLIP)
+        late = min(max(late, -self.settings.patience), SLIP)
         return Clock(come + late, late)
 
     def before(self, phase: float) -> float:
@@ -182,7 +192,7 @@ class Pace:
         s = self.settings
         turn = phase / tau
         before = self.before(phase)
-        here = 0.5 + 0.5 * cos(pi * before / s.width) if abs(before) < s.width else 0.0
+        here = _near(before, s.width)
         asked = self.commanded(time)
         share = min(max(1.0 + s.gain * late, 0.0), s.most) if asked else 0.0
         early = max(1.0 - share, 0.0)
@@ -190,11 +200,12 @@ class Pace:
         base = flow * (1.0 + (max(share, 1.0) - 1.0) * here)
         rate = base * (1.0 - s.swing * cos(tau * (turn - s.swing_from)))
         speed = s.travel * base * (1.0 - s.surge * cos(tau * (turn - s.surge_from)))
-        waits = here * early
+        waits = early * _near(before, (s.approach or s.width) if before > 0.0 else s.width)
         return Wanted(
             rate + waits * (s.settling[0] * before - rate),
             speed + waits * (s.settling[1] * (s.ahead - ahead) - speed),
             1.0 + waits * (self._brake(asked, goes) - 1.0),
+            waits * s.back,
         )
 
     def _brake(self, asked: float, goes: float) -> float:
@@ -203,3 +214,8 @@ class Pace:
         if asked or s.easing is None:
             return s.brake
         return 1.0 + (s.brake - 1.0) * min(abs(goes) / s.easing, 1.0)
+
+
+def _near(before: float, width: float) -> float:
+    """1 in the phase that it is `before`, 0 from `width` to either side on, and smooth between."""
+    return 0.5 + 0.5 * cos(pi * before / width) if abs(before) < width else 0.0

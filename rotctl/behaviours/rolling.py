@@ -130,10 +130,7 @@ class Rolling:
     def command(self, memory: RollingMemory, state: State) -> Command:
         """What rolling wants at this instant."""
         now, measure, on = memory.excursion, self._measured.measure, memory.bearing
-        pose_a, pose_b = self._poses.at(now.phase)
-        if self._catch is not None:
-            rise = float(memory.axis[2])
-            pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
+        phase = now.phase
         velocity, spin = self._speed * on.way, self._rate * on.left
         self._velocities[:] = self._constant(on)
         if self._pace:
@@ -145,6 +142,11 @@ class Rolling:
             self._damping[:] = self._usual
             self._damping[0, 0] *= wanted.brake
             self._damping[1, 1] *= wanted.brake
+            phase -= math.tau * wanted.back
+        pose_a, pose_b = self._poses.at(phase)
+        if self._catch is not None:
+            rise = float(memory.axis[2])
+            pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
         self._targets[0] = memory.origin + state.time * velocity
         target = memory.angle + state.time * spin  # phi_hat
         self._targets[1] = excursion.error(now, target, on.left, measure)

@@ -95,8 +95,8 @@ typedef struct {
 
 // A pace's settings; behaviours/pacing.py. Times of changes are (changes), rates one more.
 typedef struct {
-  double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, ahead;
-  double settling[2], brake, gain, most, easing, usual[6];
+  double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, approach, back, ahead;
+  double settling[2], brake, gain, most, patience, easing, usual[6];
   int by_speed, changes, count;
   const double *times, *rates;
   const int* over;  // (count) bodies

@@ -29,7 +29,7 @@ static void tick(const Roll* r, const mjData* d, const Reading* now, RollMemory*
   for (int i = 0; i < 3; i++) way[i] = now->com[i] - it->origin[i];
   if (p->by_speed) come = along(r->axes, way) / p->travel;
   double asked = commanded(p, d->time), late = it->due + asked * r->period - come;
-  it->late = asked ? fmin(fmax(late, -SLIP), SLIP) : 0;
+  it->late = asked ? fmin(fmax(late, -p->patience), SLIP) : 0;
   it->due = come + it->late;
 }
 
@@ -39,19 +39,25 @@ static double brake_of(const Pace* p, double asked, double speed) {
   return 1 + (p->brake - 1) * fmin(fabs(speed) / p->easing, 1);
 }
 
-// `at`
-static void keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMemory* it) {
+// `_near`
+static double near(double before, double width) {
+  return fabs(before) < width ? 0.5 + 0.5 * cos(mjPI * before / width) : 0;
+}
+
+// `at`; how far the poses go back [rad]
+static double keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMemory* it) {
   const Pace* p = r->pace;
   tick(r, d, now, it);
-  double turn = it->phase / TURN, before = modulo(p->wait - turn + 0.5, 1) - 0.5, here = 0;
-  if (fabs(before) < p->width) here = 0.5 + 0.5 * cos(mjPI * before / p->width);
+  double turn = it->phase / TURN, before = modulo(p->wait - turn + 0.5, 1) - 0.5;
+  double here = near(before, p->width);
   double asked = commanded(p, d->time);
   double share = asked ? fmin(fmax(1 + p->gain * it->late, 0), p->most) : 0;
   double early = fmax(1 - share, 0), flow = fmax(p->own, asked) * (1 - p->calm * early);
   double base = flow * (1 + (fmax(share, 1) - 1) * here);
   double rate = base * (1 - p->swing * cos(TURN * (turn - p->swing_from)));
   double speed = p->travel * base * (1 - p->surge * cos(TURN * (turn - p->surge_from)));
-  double waits = here * early, brake = 1 + waits * (brake_of(p, asked, along(r->axes, now->com_velocity)) - 1);
+  double waits = early * near(before, before > 0 ? p->approach : p->width);
+  double brake = 1 + waits * (brake_of(p, asked, along(r->axes, now->com_velocity)) - 1);
   rate += waits * (p->settling[0] * before - rate);
   speed += waits * (p->settling[1] * (p->ahead - ahead(r, d, now)) - speed);
   for (int i = 0; i < 3; i++) {
@@ -60,4 +66,5 @@ static void keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMe
     r->task[0].damping[i] = p->usual[i] * (i == 0 ? brake : 1);
     r->task[1].damping[i] = p->usual[3 + i] * (i == 1 ? brake : 1);
   }
+  return TURN * (waits * p->back);
 }

@@ -89,8 +89,8 @@ static void spread(const Roll* r, double rise, double* pose) {
 static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading* now,
                     RollMemory* it, const Command* w) {
   turn_along(r, now, it);
-  if (r->pace) keep_pace(r, d, now, it);
-  poses_at(r, it->phase, s->nu, w->pose_a, w->pose_b);
+  double back = r->pace ? keep_pace(r, d, now, it) : 0;
+  poses_at(r, it->phase - back, s->nu, w->pose_a, w->pose_b);
   if (r->catch_gain > 0) spread(r, it->axis[2], w->pose_a), spread(r, it->axis[2], w->pose_b);
   for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
   missing_turn(r, it, d->time, r->task[1].target);
