@@ -48,7 +48,8 @@ def require_fit(config: Config, model: Model) -> None:
 def _require_judged(
     behaviour: BehaviourSettings, criteria: Criteria, model: Model, key: str = "criteria"
 ) -> None:
-    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic", "orientation"]
+    wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic"]
+    wanted += ["one_foot", "orientation"]
     if isinstance(behaviour, ChainSettings):
         wanted = ["getting_up"] if behaviour.again else ["chain", "getting_up"]
     if isinstance(behaviour, RollingSettings):

@@ -231,6 +231,11 @@ CASES = {
         r"behaviour\.stages\.(1\.glide\.seconds|2\.tasks\.shift\.aim\.(?!law).*)",
         seconds=2.4,
     ),
+    "onto one foot": Case(
+        ("behaviour=pirouette_one_foot",),
+        r"behaviour\.stages\.1\.tasks\.over\.aim\.(?!law).*",
+        seconds=1.5,
+    ),
     "over the hands": Case(
         ("behaviour=handstand",),
         r"behaviour\.stages\.(3\.until|4\.tasks\.poise\.aim)\.(within|speed|rate|gain|margin)",

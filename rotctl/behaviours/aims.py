@@ -13,6 +13,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.attitudes import Bow, Face, Plane, Upright
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.launch import Launch, Lean, Whirl
+from rotctl.behaviours.pivoting import Bring
 from rotctl.behaviours.placing import Above, Ground, Opposite, Watch
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.scene import Scene
@@ -109,6 +110,7 @@ Aim = Annotated[
     | Launch
     | Whirl
     | Poise
+    | Bring
     | Shift
     | Carry
     | Place
@@ -136,6 +138,7 @@ SERVES: dict[type, tuple[str, ...]] = {
     Launch: ("linear",),
     Whirl: ("spin",),
     Poise: ("linear",),
+    Bring: ("linear",),
     Shift: ("linear",),
     Carry: ("linear",),
     Place: ("point",),

@@ -18,6 +18,7 @@ from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.levelling import LevellingSettings
 from rotctl.behaviours.pacing import PaceSettings
+from rotctl.behaviours.pivoting import Bring
 from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
@@ -89,6 +90,7 @@ UNITS: Units = {
     | all_of(speed, "forward", "up", "most")
     | all_of(time, "soonest"),
     Whirl: all_of(turning, "most", "least", "ceiling") | all_of(rate, "calm"),
+    Bring: all_of(length, "point") | all_of(time, "seconds", "soonest"),
     Poise: all_of(length, "margin") | all_of(rate, "rate"),
     Shift: all_of(length, "most", "ahead") | all_of(rate, "rate"),
     Carry: all_of(length, "margin", "heights", "throw")

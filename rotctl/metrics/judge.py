@@ -20,6 +20,7 @@ from rotctl.metrics import (
     finish,
     flip,
     getting_up,
+    one_foot,
     orientation,
     pace,
     peaks,
@@ -34,6 +35,7 @@ from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import FlipCriteria
 from rotctl.metrics.getting_up import GettingUpCriteria
 from rotctl.metrics.halts import Halts
+from rotctl.metrics.one_foot import OneFootCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
@@ -47,6 +49,7 @@ Single = Annotated[
     | FinishCriteria
     | FlipCriteria
     | GettingUpCriteria
+    | OneFootCriteria
     | OrientationCriteria
     | RollingCriteria
     | StandingCriteria,
@@ -77,6 +80,7 @@ _KINDS = (
     finish,
     acrobatic,
     getting_up,
+    one_foot,
     chain,
     disturbed,
 )
@@ -147,6 +151,8 @@ def judge(
         found, reason = acrobatic.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, FlipCriteria):
         found, reason = flip.judge(log, criteria, commanded["target_excursion"], period)
+    elif isinstance(criteria, OneFootCriteria):
+        found, reason = one_foot.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, GettingUpCriteria):
         up, reason = getting_up.judge(log, criteria, period, upright)
         found, asked = dict(up), {}
