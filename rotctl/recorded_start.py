@@ -47,6 +47,8 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
         "name": name,
         "description": f"As {config.behaviour.name}, seed {config.seed}, was at {seconds}.",
         **{key: [0.0, 0.0] for key in RANGES},
+        "scatter": 0.0,
+        "tilt": 0.0,
         "state": state,
     }
     run = brief(log.attributes["run_id"])  # a stranger's text, which must not end the comment
