@@ -131,6 +131,15 @@ def test_a_stage_that_comes_to_nothing_goes_back():
     assert set(stage[2:].tolist()) == {1}  # lower than that all the while: it begins anew each step
 
 
+@pytest.mark.parametrize(("speed", "gathers"), [(0.0, True), (2.0, False)])
+def test_who_still_moves_fast_comes_to_lie_first(speed, gathers):
+    """On its front it needs no turn, and gathers its hands at once if it is calm."""
+    config = load(["behaviour=get_up", "seed=2001", "duration=0.05"])
+    moving = replace(config.start, speed_x=(speed, speed))
+    log = in_memory(build(replace(config, start=moving)))[0].arrays()
+    assert (log["command/stage"][-1] == 1) == gathers
+
+
 def test_it_can_go_to_stages_alone_that_there_are():
     def wrong(stage):
         if not stage.otherwise:

@@ -214,6 +214,11 @@ CASES = {
         ("behaviour=get_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
     ),
     "reaching": Case(("behaviour=get_up",), r"behaviour\.stages\.1\.reach\.seconds"),
+    "coming to lie first": Case(
+        ("behaviour=get_up", "start.speed_x=[2.0,2.0]"),
+        r"behaviour\.stages\.0\.until\.speed",
+        seconds=0.05,
+    ),
     "again": Case(("behaviour=rock_up", "seed=2012"), r"behaviour\.again", seconds=2.2),
     "striding into a cartwheel": Case(
         ("behaviour=cartwheel",),
