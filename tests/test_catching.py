@@ -1,7 +1,8 @@
-"""A roll that tips over its side catches itself with the arm on that side."""
+"""A roll that tips over its side catches itself with its limbs on that side."""
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -9,10 +10,11 @@ from rotctl.behaviours.catching import Catch, CatchSettings
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.judge import judge
+from rotctl.rotations import advanced
 from rotctl.run import in_memory
 from rotctl.scenario import build
 
-SETTINGS = CatchSettings(joint="shoulder_x", gain=4.0, free=0.03, most=1.0)
+SETTINGS = CatchSettings(out={"shoulder_x": 1.0, "elbow": -0.5}, gain=4.0, free=0.03, lead=0.1)
 
 
 @pytest.fixture(scope="module")
@@ -29,16 +31,18 @@ def moved(model, rise, about="left", pose=0.2, **changes):
 
 
 @pytest.mark.parametrize(
-    ("about", "rise", "arm"),
+    ("about", "rise", "side"),
     [
-        ("left", -0.13, "shoulder_x_l"),
-        ("left", 0.13, "shoulder_x_r"),
-        ("right", -0.13, "shoulder_x_r"),  # whose back is to the way
-        ("right", 0.13, "shoulder_x_l"),
+        ("left", -0.13, "_l"),
+        ("left", 0.13, "_r"),
+        ("right", -0.13, "_r"),  # whose back is to the way
+        ("right", 0.13, "_l"),
     ],
 )
-def test_the_arm_on_the_low_side_goes_out_and_nothing_else_moves(model, about, rise, arm):
-    assert moved(model, rise, about) == pytest.approx({arm: 4.0 * 0.1})
+def test_the_limbs_on_the_low_side_move_and_nothing_else_does(model, about, rise, side):
+    share = 4.0 * 0.1
+    expected = {f"shoulder_x{side}": share, f"elbow{side}": -0.5 * share}
+    assert moved(model, rise, about, pose=0.6) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("rise", [0.0, 0.03, -0.03, 0.01])
@@ -46,28 +50,50 @@ def test_a_little_is_no_tipping(model, rise):
     assert moved(model, rise) == {}
 
 
-def test_it_goes_out_without_a_jump_and_no_further_than_told(model):
+def test_they_go_without_a_jump_and_no_further_than_told(model):
     catch, rises = Catch(SETTINGS, model, "left"), np.linspace(-1.0, 1.0, 2001)
-    out = [catch.out(rise) for rise in rises]
-    assert np.abs(np.diff(out)).max() <= 4.0 * 0.001 + 1e-12
-    assert (min(out), max(out)) == (0.0, 1.0)
+    share = [catch.share(rise) for rise in rises]
+    assert np.abs(np.diff(share)).max() <= 4.0 * 0.001 + 1e-12
+    assert (min(share), max(share)) == (0.0, 1.0)
 
 
-def test_it_keeps_within_the_joint_and_leaves_a_pose_that_is_beyond_it(model):
-    high = model.joint_range[model.joint_names.index("shoulder_x_l"), 1]
-    assert moved(model, -1.0, pose=high - 0.1) == pytest.approx({"shoulder_x_l": 0.1})
-    assert moved(model, -1.0, pose=high + 0.1) == {}
+def test_they_keep_within_their_joints_and_leave_a_pose_that_is_beyond(model):
+    low, high = model.joint_range[model.joint_names.index("shoulder_x_l")]
+    for out, end in ((1.0, high), (-1.0, low)):
+        inside, beyond = end - 0.1 * out, end + 0.1 * out
+        only = {"out": {"shoulder_x": out}}
+        assert moved(model, -1.0, pose=inside, **only) == pytest.approx({"shoulder_x_l": 0.1 * out})
+        assert moved(model, -1.0, pose=beyond, **only) == {}
+
+
+def test_what_is_about_to_tip_counts_as_far_as_it_would_get(model):
+    """A unit that turns, a lead later, is where its end's rise was reckoned to be."""
+    catch, rng = Catch(SETTINGS, model, "left"), np.random.default_rng(3)
+    for _ in range(20):
+        axis, turning = rng.normal(size=(2, 3))
+        axis /= np.linalg.norm(axis)
+        step = 1e-6
+        later = np.array(advanced([1.0, 0.0, 0.0, 0.0], (turning * step).tolist()))
+        matrix = np.zeros(9)
+        mujoco.mju_quat2Mat(matrix, later)
+        rate = ((matrix.reshape(3, 3) @ axis)[2] - axis[2]) / step
+        assert catch.rise(axis, turning) == pytest.approx(axis[2] + 0.1 * rate, abs=1e-5)
 
 
 def test_what_cannot_catch_is_refused():
     with pytest.raises(InputError, match="lies on its side, and has nothing to catch"):
         load(["behaviour=sideways_roll", "+catch=arm"])
-    with pytest.raises(InputError, match=r"behaviour\.catch\.joint names the unknown joint 'arm'"):
-        build(load(["behaviour=forward_roll", "+catch=arm", "behaviour.catch.joint=arm"]))
+    for joint, said in {
+        "arm": r"behaviour\.catch\.out\.arm names the unknown joint 'arm'",
+        "waist_y": "waist_y is of no limb on either side; valid joints: ankle_x, ankle_y, elbow,",
+        "elbow_l": "elbow_l is of no limb on either side",
+    }.items():
+        with pytest.raises(InputError, match=said):
+            build(load(["behaviour=forward_roll", "+catch=arm", f"+behaviour.catch.out.{joint}=1"]))
 
 
 def test_pushes_that_lay_a_squat_on_its_side_are_caught():
-    """Of these twelve it overcomes four more at least than without."""
+    """Of these twelve it overcomes five more at least than without."""
     recovered = {}
     for catch in ("", "+catch=arm"):
         for direction in (90, 120, 180, 210, 240, 270):
@@ -87,4 +113,4 @@ def test_pushes_that_lay_a_squat_on_its_side_are_caught():
                     log, config.criteria, config.behaviour.commanded, 1 / 60, 5.0, made.model.mj
                 )
                 recovered.setdefault(catch, []).append(judged.columns["recovered"])
-    assert sum(recovered["+catch=arm"]) >= sum(recovered[""]) + 4
+    assert sum(recovered["+catch=arm"]) >= sum(recovered[""]) + 5

@@ -93,9 +93,19 @@ class CompiledRoll:
 
     def add_catch(self, catch: Catch) -> None:
         """Catch itself, too."""
-        there, given = self.constants, catch.settings
-        there.catch_gain, there.catch_free, there.catch_most = given.gain, given.free, given.most
-        there.catch_motor[:], there.catch_high[:] = catch.motors, catch.high
+        given = catch.settings
+        made = structure("Catch")(
+            count=len(catch.out),
+            gain=given.gain,
+            free=given.free,
+            lead=given.lead,
+            motor=self._at(np.array(catch.motors, np.int32)),
+            out=self._at(np.array(catch.out, float)),
+            low=self._at(catch.low),
+            high=self._at(catch.high),
+        )
+        self._kept.append(made)
+        self.constants.catch = ctypes.addressof(made)
 
     def add_oblique(self, oblique: Sequence[float]) -> None:
         """Keep an oblique axis of the trunk, see `Oblique` [deg]."""

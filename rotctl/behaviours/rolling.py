@@ -145,7 +145,7 @@ class Rolling:
             phase -= math.tau * wanted.back
         pose_a, pose_b = self._poses.at(phase)
         if self._catch is not None:
-            rise = float(memory.axis[2])
+            rise = self._catch.rise(memory.axis, state.momentum.angular_velocity)
             pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
         self._targets[0] = memory.origin + state.time * velocity
         target = memory.angle + state.time * spin  # phi_hat

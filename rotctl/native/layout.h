@@ -102,16 +102,25 @@ typedef struct {
   const int* over;  // (count) bodies
 } Pace;
 
+// What catches a roll that tips, behaviours/catching.py: motors (2, count) of the two
+// sides, -1 where the body has none.
+typedef struct {
+  double gain, free, lead;
+  int count;
+  const int* motor;
+  const double *out, *low, *high;
+} Catch;
+
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
-// `coefficients` (2, waves, nu); its two tasks are where the command has them. Nothing catches it
-// where that gain is 0.
+// `coefficients` (2, waves, nu); its two tasks are where the command has them.
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
-  double catch_gain, catch_free, catch_most, catch_high[2], oblique[WAVES];
-  int column, integral, rows, waves, oblique_waves, catch_motor[2];
+  double oblique[WAVES];
+  int column, integral, rows, waves, oblique_waves;
   const double *table, *rise, *coefficients, *low, *high;
   const Pace* pace;
+  const Catch* catch;
   Task* task;
 } Roll;
 

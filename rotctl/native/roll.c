@@ -75,13 +75,19 @@ static void poses_at(const Roll* r, double phase, int nu, double* a, double* b) 
   }
 }
 
-// behaviours/catching.py `spread`
-static void spread(const Roll* r, double rise, double* pose) {
-  for (int i = 0; i < 2; i++) {
-    int motor = r->catch_motor[i];
-    if (motor < 0) continue;
-    double out = fmin(fmax(r->catch_gain * ((i ? rise : -rise) - r->catch_free), 0), r->catch_most);
-    pose[motor] = fmin(pose[motor] + out, fmax(r->catch_high[i], pose[motor]));
+// behaviours/catching.py `share`, `rise` and `spread`
+static void spread(const Catch* c, const Reading* now, const RollMemory* it, double* pose) {
+  const double* turning = now->angular_velocity;
+  double rate = turning[0] * it->axis[1] - turning[1] * it->axis[0];
+  double rise = it->axis[2] + c->lead * rate;
+  for (int side = 0; side < 2; side++) {
+    double share = fmin(fmax(c->gain * ((side ? rise : -rise) - c->free), 0), 1);
+    for (int i = 0; i < c->count; i++) {
+      int motor = c->motor[side * c->count + i];
+      if (motor < 0) continue;
+      double angle = pose[motor], out = angle + share * c->out[i];
+      pose[motor] = fmin(fmax(out, fmin(c->low[motor], angle)), fmax(c->high[motor], angle));
+    }
   }
 }
 
@@ -91,7 +97,7 @@ static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading
   turn_along(r, now, it);
   double back = r->pace ? keep_pace(r, d, now, it) : 0;
   poses_at(r, it->phase - back, s->nu, w->pose_a, w->pose_b);
-  if (r->catch_gain > 0) spread(r, it->axis[2], w->pose_a), spread(r, it->axis[2], w->pose_b);
+  if (r->catch) spread(r->catch, now, it, w->pose_a), spread(r->catch, now, it, w->pose_b);
   for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
   missing_turn(r, it, d->time, r->task[1].target);
 }
