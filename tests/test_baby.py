@@ -1,8 +1,11 @@
 """A baby turns over, or tries to, [Brown2013] section 6 and Figure 3."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from rotctl.behaviours.posing import OverPhase
 from rotctl.config import load
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -22,11 +25,29 @@ def turns(*overrides):
     return (np.array([summary[name] for summary in found]) for name in names)
 
 
-@pytest.mark.parametrize("target", [180, -180, 90, -120])
+@pytest.mark.parametrize("target", [180, -180, 90, -120, 105])
 def test_a_baby_turns_as_far_as_it_is_told_and_stays(target):
     _, turned, success = turns("behaviour=baby_roll_over", f"behaviour.target_excursion={target}")
     assert success.sum() >= MOST
     assert (np.abs(turned - target) < 10.0).sum() >= MOST
+
+
+class Phases:
+    """A pair of poses that tells at which phase it is asked."""
+
+    def at(self, phase):
+        return np.full((2, 1), phase)
+
+
+@pytest.mark.parametrize(
+    ("missing", "ahead"), [(0.0, 0.0), (0.1, 0.25), (-0.1, -0.25), (0.5, 0.6), (-0.5, -0.6)]
+)
+def test_a_pose_goes_on_beyond_a_target_by_what_is_missing(missing, ahead):
+    law = OverPhase(Phases(), lead=0.6, beyond=1.5)
+    scene = SimpleNamespace(target=1.0, turned=1.0 - missing, excursion=SimpleNamespace(phase=2.0))
+    poses, speeds = law.poses(scene, None)
+    assert poses == pytest.approx(2.0 + ahead)
+    assert not speeds.any()
 
 
 def test_a_weak_one_tries_and_does_not_make_it():

@@ -39,14 +39,21 @@ class Memoryless:
 
 @dataclass(frozen=True)
 class OverPhase(Memoryless):
-    """Key poses over the phase, so far ahead of it, at most at the target [rad]."""
+    """Key poses over the phase, ahead of it.
+
+    Attributes:
+        lead: at most, and at most at the target [rad].
+        beyond: multiple of what is missing, which is added to it [-].
+    """
 
     pair: PosePair
     lead: float
+    beyond: float = 0.0
 
     def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
-        ahead = min(max(scene.target - scene.turned, -self.lead), self.lead)
+        missing = (1.0 + self.beyond) * (scene.target - scene.turned)
+        ahead = min(max(missing, -self.lead), self.lead)
         poses = self.pair.at(scene.excursion.phase + ahead)
         return poses, np.zeros_like(poses)
 

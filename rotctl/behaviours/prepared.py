@@ -122,7 +122,7 @@ def pose_law(stage: Stage, shape: str, frame: Frame, target: float, model: Model
     if stage.reach:
         return stage.reach.make(model, f"{key}.reach")
     assert stage.poses  # one of the six is there
-    return OverPhase(make_pose_pair(model, stage.poses, f"{key}.poses"), stage.lead)
+    return OverPhase(make_pose_pair(model, stage.poses, f"{key}.poses"), stage.lead, stage.beyond)
 
 
 def _behind(stage: Stage, model: Model) -> Array | None:

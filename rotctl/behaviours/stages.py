@@ -85,6 +85,8 @@ class Stage:
         pose: name of the controller's pose gains in place of its usual ones.
         contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
+        beyond: and beyond the target by this multiple of what is missing: a body that lies short of
+            it shifts its limbs on [-].
         held_out: bodies whose contacts control may not use;
         toes: of which it may use those in front of their middle alone, so that heels can rise.
         lying: the way, left and phase are from here on those of how the body lies as the stage
@@ -107,6 +109,7 @@ class Stage:
     pose: str = ""
     contact: str = ""
     lead: NonNegative = 0.0
+    beyond: NonNegative = 0.0
     held_out: tuple[str, ...] = ()
     toes: tuple[str, ...] = ()
     lying: Lying | None = None
