@@ -33,7 +33,7 @@ def words(line, capsys):
         ("rotctl --config-dir ", []),  # a folder: the shell's own business
         ("rotctl run --config-dir s", []),
         ("rotctl run con", ["controller.", "controller="]),
-        ("rotctl run controller.po", ["controller.pose."]),
+        ("rotctl run controller.po", ["controller.pose.", "controller.poses."]),
         ("rotctl show controller.pose.w", ["controller.pose.weight="]),
         ("rotctl show --part controller.pose.w", ["controller.pose.weight"]),
         ("rotctl run behaviour=back_flip behaviour.shap", ["behaviour.shape="]),

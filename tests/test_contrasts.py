@@ -83,7 +83,7 @@ def test_a_tracked_excursion_has_stiffness_and_a_target_that_turns():
 )
 def test_free_out_of_plane(name, stiffness, damping):
     gains = load([f"controller={name}"]).controller.tasks["spin"]
-    usual = load([]).controller.tasks["spin"]
+    usual = load(["controller=rolling"]).controller.tasks["spin"]
     assert gains.stiffness == (stiffness, 0.0, stiffness)
     assert gains.damping == (damping, usual.damping[1], damping)
 

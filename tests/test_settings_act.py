@@ -44,7 +44,7 @@ class Case:
 
 CASES = {
     "default": Case(
-        (),
+        ("controller=rolling",),  # listening also has the gains of getting up
         r"(?!character\.bodies|criteria|controller\.thresholds).*",
         {
             r"controller\.merging\.angle": "of hills, where contacts are near each other",

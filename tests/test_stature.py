@@ -158,7 +158,7 @@ def test_a_child_and_a_tall_adult_roll(who):
 
 
 def test_gains_have_their_units():
-    settings = load([]).controller
+    settings = load(["controller=rolling"]).controller
     by = Likeness(size=4.0, mass=3.0)
     found = similar(settings, by, {})
     assert found.pose.stiffness == pytest.approx(settings.pose.stiffness / 4)
