@@ -327,6 +327,7 @@ def test_yaml_holds_the_whole_config():
         for joint in body["joints"]:  # of what a joint may have and has not, nothing is said
             assert {joint.pop(name) for name in ("damping", "armature", "spring")} == {None}
         assert {geom.pop("hull") for geom in body["geoms"]} == {None}
+    assert whole["start"].pop("state") is None
     assert to_dict(config) == whole
 
 
