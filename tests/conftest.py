@@ -42,12 +42,13 @@ class Step:
 
 
 class World:
-    """The default scenario with recorded steps, and independent mechanics to compare with."""
+    """A roll with recorded steps, and independent mechanics to compare with."""
 
     def __init__(self):
         # Fixed here, so that the tests do not follow the tuning of conf/.
         self.config = load(
             [
+                "behaviour=forward_roll_1_on_head",
                 f"duration={SECONDS:g}",
                 "controller.solver=boxqp",
                 "controller.form=condensed",

@@ -24,7 +24,19 @@ FILE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])  # x left, 
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
     out = tmp_path_factory.mktemp("export") / "a"
-    assert main(["run", "duration=1", "seed=2001", "--out", str(out)]) == 0
+    assert (
+        main(
+            [
+                "run",
+                "behaviour=forward_roll_1_on_head",
+                "duration=1",
+                "seed=2001",
+                "--out",
+                str(out),
+            ]
+        )
+        == 0
+    )
     return RunLog.open(next(out.glob("*/run.h5")))
 
 

@@ -67,7 +67,7 @@ def test_the_adult_stays_below_the_limit_on_every_heightfield(terrain, physics):
 
 def test_what_could_come_near_it_is_refused_in_one_line():
     with pytest.raises(InputError) as error:
-        build(load(["terrain=uneven", "physics=lockstep", "physics.margin=0.1"]))
+        build(load(["character=adult", "terrain=uneven", "physics=lockstep", "physics.margin=0.1"]))
     assert str(error.value) == (
         "character 'adult' on terrain 'uneven': pelvis (0.2 m long, reach 0.21 m) could make 51 "
         "contacts with cells of 0.15 m, MuJoCo keeps 50 of a pair; choose another terrain, "

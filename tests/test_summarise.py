@@ -22,7 +22,11 @@ from rotctl.results.stored_runs import stored_runs
 from rotctl.results.table import Table, table
 from rotctl.run import make, run
 
-ARGUMENTS = ["behaviour=forward_roll_1,forward_roll_1_phase", "seed=range(0,3)", "duration=2"]
+ARGUMENTS = [
+    "behaviour=forward_roll_1_on_head,forward_roll_1_phase",
+    "seed=range(0,3)",
+    "duration=2",
+]
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +91,9 @@ def test_a_row_a_run_with_the_overridden_keys_as_columns(made):
     assert found_.keys == ["behaviour", "config.duration", "seed"]
     assert list(rows.columns[:5]) == ["run_id", "status", *found_.keys]
     assert list(zip(rows["behaviour"], rows["seed"], strict=True)) == [
-        (name, seed) for name in ("forward_roll_1", "forward_roll_1_phase") for seed in range(3)
+        (name, seed)
+        for name in ("forward_roll_1_on_head", "forward_roll_1_phase")
+        for seed in range(3)
     ]
     assert set(rows["status"]) == {"done"}
     assert set(rows["config.duration"]) == {2.0}
@@ -103,9 +109,9 @@ def test_the_command_prints_markdown_and_writes_csv(sweep, capsys):
     stdout, stderr = capsys.readouterr()
     lines = stdout.splitlines()
     assert stderr == ""
-    assert lines[0].startswith("| behaviour            | config.duration | n | success [95 %]  |")
+    assert lines[0].startswith("| behaviour              | config.duration | n | success [95 %]  |")
     assert set(lines[1]) == set("| -")
-    assert lines[2].startswith("| forward_roll_1       | 2               | 3 | 100 % [44, 100] |")
+    assert lines[2].startswith("| forward_roll_1_on_head | 2               | 3 | 100 % [44, 100] |")
     assert lines[-2:] == [str(sweep / "summary.csv"), str(sweep / "groups.csv")]
     rows = list(csv.DictReader(io.StringIO((sweep / "summary.csv").read_text())))
     assert len(rows) == 6
@@ -183,7 +189,7 @@ def test_a_damaged_log_is_a_row_and_leftovers_are_not(sweep):
     (row,) = found_.rows[found_.rows["status"] == "damaged"].to_dict("records")
     assert row["run_id"] == log.parent.name
     assert found_.notes == [f"{log.parent.name}: damaged: truncated or damaged HDF5 file"]
-    assert row["behaviour"] in ("forward_roll_1", "forward_roll_1_phase")
+    assert row["behaviour"] in ("forward_roll_1_on_head", "forward_roll_1_phase")
 
 
 def test_runs_below_deeper_folders_count_once(made, tmp_path):
@@ -205,7 +211,8 @@ def test_without_a_sweep_the_keys_are_those_that_differ(tmp_path):
 
 
 def test_a_foreign_run_in_a_sweep_is_not_pooled_with_what_it_differs_from(sweep):
-    run(load(["duration=0.5", "controller.pose.damping=39"]), sweep)
+    mine = ["behaviour=forward_roll_1_on_head", "duration=0.5", "controller.pose.damping=39"]
+    run(load(mine), sweep)
     groups = grouped(table(sweep))
     assert "controller.pose.damping" in groups.keys
     assert sorted(groups.rows["n"]) == [1, 3, 3]

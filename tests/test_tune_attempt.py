@@ -57,7 +57,11 @@ def test_a_column_outside_of_what_is_wished_costs(value, cost):
 
 
 def test_a_run_has_the_columns_that_are_asked_for():
-    item = Attempt(load(["seed=1000000", "duration=3"]), STOPPING, ("head_share", "rate_error"))
+    item = Attempt(
+        load(["behaviour=forward_roll_1_on_head", "seed=1000000", "duration=3"]),
+        STOPPING,
+        ("head_share", "rate_error"),
+    )
     found = attempt(item).columns
     assert list(found) == ["head_share", "rate_error"]
     assert 0.01 < found["head_share"] < 0.5
