@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import frame_of
+from rotctl.behaviours.flight import Flight
 from rotctl.config import composed, load
 from rotctl.errors import InputError
 from rotctl.metrics.flip import judge, longest_flight, turn
@@ -85,3 +86,24 @@ def test_a_wrong_turn_is_told(pirouettes):
     scenario, log = pirouettes[360.0]
     strict = replace(scenario.config.criteria, turn=0.001)
     assert judge(log, strict, 180.0, PERIOD)[1].endswith(" deg of 180")
+
+
+@pytest.mark.parametrize(("turn", "opens"), [(180.0, 0.22), (-360.0, 0.22), (540.0, 0.44 / 3)])
+def test_what_turns_further_opens_later(turn, opens):
+    """As long before the landing as it takes to turn by the same angle."""
+    config = load(["behaviour=pirouette"])
+    (flight,) = (stage.flight for stage in config.behaviour.stages if stage.flight)
+    assert flight.opened_for(np.radians(turn)) == pytest.approx(opens)
+    assert replace(flight, opening_for=None).opened_for(np.radians(turn)) == 0.22
+
+
+def test_one_and_a_half_turns_stay_folded_for_longer():
+    """The law that flies them is told so."""
+    held = {}
+    for target in (360.0, 540.0):
+        scenario = build(load(["behaviour=pirouette", f"behaviour.target_excursion={target}"]))
+        (flight,) = (stage.flight for stage in scenario.config.behaviour.stages if stage.flight)
+        frame = frame_of("left", 0.0, "up")
+        law = Flight(flight, scenario.model, frame, np.radians(target), "flight")
+        held[target] = law.tucking.held(0.15)
+    assert held[360.0] < 1.0 == held[540.0]

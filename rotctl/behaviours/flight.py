@@ -104,8 +104,9 @@ class Flight:
                 raise InputError(f"{key}.levelling: is of turns about left, and this one is not")
             aside = f"{key}.levelling"
             self._levelling = Levelling(level, model, self._shapes, settings.change, aside)
+        opening = settings.opened_for(target)
         self.tucking = Tucking(
-            settings, model, self._shapes, self._axis, self._usual, tightest, key, shape
+            settings, model, self._shapes, self._axis, self._usual, tightest, opening, key, shape
         )
 
     def _entry(self, entry: EntrySettings, key: str) -> Contact:

@@ -1,6 +1,7 @@
 """What a flight is told: its shapes, and how it lands."""
 
 from dataclasses import field
+from math import degrees
 
 from pydantic.dataclasses import dataclass as validated
 
@@ -8,7 +9,7 @@ from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.levelling import LevellingSettings
 from rotctl.meant import instead
 from rotctl.motion import Turn
-from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings import SPARSE, STRICT, Finite, Fraction, NonNegative, Positive
 
 TUCK = "tuck"  # the shape that every flight has
 
@@ -54,6 +55,8 @@ class FlightSettings:
         shapes: that may be flown in its place, by name: their tightest poses.
         tightest, longest: shares of the way to them that it may go [-].
         opening: to the landing pose begins so long before it [s].
+        opening_for: the turn that `opening` is for; what turns further opens later, as if by the
+            angle that is left [deg]. All by default.
         change: from the landing pose to the tuck, or from the pose at take-off to the line of
             shapes, takes so long [s].
         entry: how it lands, if always alike;
@@ -77,6 +80,7 @@ class FlightSettings:
     coasting: NonNegative = 0.0
     levelling: LevellingSettings | None = None
     midway: MidwaySettings | None = None
+    opening_for: Positive | None = field(default=None, metadata=SPARSE)
 
     def __post_init__(self) -> None:
         if (self.entry is None) == (self.feet is None):
@@ -86,6 +90,13 @@ class FlightSettings:
                 raise ValueError(f"levelling: no shape {shape!r}; {instead(shape, known)}")
         if self.midway and not 0.0 < self.midway.amount < 1.0:
             raise ValueError(f"midway: its amount {self.midway.amount:g} is not between 0 and 1")
+
+    def opened_for(self, target: float) -> float:
+        """How long before the landing it opens, of a turn to a target [rad]; [s]."""
+        turn = abs(degrees(target))
+        if self.opening_for is None or turn <= self.opening_for:
+            return self.opening
+        return self.opening * self.opening_for / turn
 
     def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
         """Of a shape, by joint name [rad]; None if there is no such shape."""

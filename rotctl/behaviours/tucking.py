@@ -31,6 +31,7 @@ class Tucking:
         axis: Array,
         usual: Contact,
         tightest: dict[str, Turn],
+        opening: float,
         key: str,
         shape: str,
     ) -> None:
@@ -40,12 +41,13 @@ class Tucking:
             axis: (3,) that it turns about, in the trunk's frame.
             usual: the landing that inertia is tabulated for.
             tightest: pose of the shape, by joint name.
+            opening: how long before the landing it opens [s].
             key: where the settings stand.
 
         Raises:
             InputError: a joint is not there.
         """
-        self._settings = settings
+        self._settings, self._opening = settings, opening
         self._tuck = make_pose(model, tightest, f"{key}.{shape}")
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
         self._midway: tuple[float, Array] | None = None
@@ -69,7 +71,7 @@ class Tucking:
 
     def held(self, time: float) -> float:
         """What is held of an amount so long before the landing [s]."""
-        return smooth(min(time / self._settings.opening, 1.0))
+        return smooth(min(time / self._opening, 1.0))
 
     def mean_slowness(self, amount: float, now: float, time: float) -> float:
         """Mean of 1/I until the landing [1/(kg m2)].
@@ -82,9 +84,8 @@ class Tucking:
 
     def _plan(self, time: float) -> tuple[Array, Array]:
         """What is held of an amount at `INSTANTS` of the time left [s], and gone of its change."""
-        settings = self._settings
-        held = smooth(np.minimum(REMAINING * (time / settings.opening), 1.0))
-        return held, smooth(np.minimum(INSTANTS * (time / settings.change), 1.0))
+        held = smooth(np.minimum(REMAINING * (time / self._opening), 1.0))
+        return held, smooth(np.minimum(INSTANTS * (time / self._settings.change), 1.0))
 
     def _mean_slowness(self, amount: float, now: float, held: Array, gone: Array) -> float:
         amounts = now + (amount * held - now) * gone
