@@ -13,6 +13,7 @@ from typing import Any
 from rotctl.checked import brief
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
+from rotctl.listing import usual
 from rotctl.settings import MOST_PARTS
 
 KIND, SAID = "chain", "said"
@@ -51,9 +52,8 @@ def composed(
         return {**data, "behaviour": chain}
     _require_few(len(said), 0)
     made = [_made(f"behaviour.parts[{i}]", part, compose) for i, part in enumerate(said)]
-    usual = compose([])
     for number, one in enumerate(made):
-        _require_here(f"behaviour.parts[{number}]={brief(said[number])}", one, data, usual)
+        _require_here(f"behaviour.parts[{number}]={brief(said[number])}", one, data)
         if number:
             _require_facing(f"behaviour.parts[{number}]", one, compose)
     if between is not None:
@@ -121,15 +121,14 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
     return {**made, SAID: shlex.join([words[0].partition("=")[2], *words[1:]])}
 
 
-def _require_here(
-    where: str, made: dict[str, Any], data: dict[str, Any], usual: dict[str, Any]
-) -> None:
+def _require_here(where: str, made: dict[str, Any], data: dict[str, Any]) -> None:
     """See that the run has the world and the body that a part's behaviour asks for."""
     for group in WORLD:
         asked = _name(made, group)
-        if asked not in (_name(usual, group), _name(data, group)):
+        if asked not in (usual()[group], _name(data, group)):
             raise InputError(
-                f"{where}: is for {group}={asked}, and the run has {group}={_name(data, group)}"
+                f"{where}: is for {group}={asked}, and the run has {group}={_name(data, group)}; "
+                f"give the run {group}={asked}"
             )
 
 

@@ -192,6 +192,12 @@ def content(path: Path) -> dict[str, Any]:
     return data
 
 
+def usual() -> dict[str, str]:
+    """Config groups to what they are where nobody chooses; a behaviour may bring others."""
+    entries = content(conf_dir() / "config.yaml")["defaults"]
+    return {group: name for entry in entries if entry != "_self_" for group, name in entry.items()}
+
+
 def _defaults(path: Path) -> list[tuple[str, str]]:
     """The choices that a file brings."""
     data = content(path)

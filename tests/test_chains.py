@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from here import swept
 
+from rotctl import listing
 from rotctl.chained import composed
 from rotctl.config import load
 from rotctl.control.similar import similar_gains
@@ -147,9 +148,12 @@ def test_what_was_said_of_a_part_does_not_act():
         (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts[0].behaviour.stages[0]=5: "
          "must be keys with values"),
         (["incline +finish=stand", "stand"], 'behaviour.parts[0]="incline +finish=stand": is for '
-         "terrain=incline, and the run has terrain=flat"),
+         "terrain=incline, and the run has terrain=flat; give the run terrain=incline"),
         (["stand", "baby_roll_over"], 'behaviour.parts[1]="baby_roll_over": is for character=baby, '
-         "and the run has character=adult"),
+         "and the run has character=adult; give the run character=baby"),
+        (["back_flip", "forward_roll_1"], 'behaviour.parts[1]="forward_roll_1": is for '
+         "character=adult_free_head, and the run has character=adult; give the run "
+         "character=adult_free_head"),
         (["stand", "stand ~behaviour.heading"], "behaviour.parts[2].behaviour.heading: missing, it "
          "cannot be left out"),
         (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts[1]: "
@@ -227,6 +231,23 @@ def test_what_the_run_is_told_acts_on_the_parts_that_take_it():
 def test_a_part_may_be_for_the_terrain_of_the_run():
     made = chain("stand", "incline", more=["terrain=incline"])
     assert made.behaviour.parts[-1].behaviour.name == "incline"
+
+
+def test_a_part_may_be_for_the_character_of_the_run():
+    """One that asks for none is at home on any."""
+    made = chain("tip_over", "forward_roll_1", more=["character=adult_free_head"])
+    assert made.behaviour.parts[-1].behaviour.name == "forward_roll_1"
+    assert made.character.exclude_from_control == ("head",)
+
+
+@pytest.mark.parametrize("behaviour", ["forward_roll_twice", "rock_up"])
+def test_a_chain_of_an_own_character(tmp_path, behaviour):
+    (tmp_path / "character").mkdir()
+    own = tmp_path / "character" / "tall.yaml"
+    own.write_text("defaults: [adult, _self_]\nname: tall\nheight: 1.9\n")
+    with listing.own(tmp_path):
+        made = load([f"behaviour={behaviour}", "character=tall"])
+    assert (made.character.name, made.character.height) == ("tall", 1.9)
 
 
 def test_the_first_part_heads_where_it_is_told():

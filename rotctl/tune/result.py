@@ -9,7 +9,7 @@ import yaml
 from rotctl import files
 from rotctl.choosing import SELF
 from rotctl.listing import choices as choices_of
-from rotctl.listing import conf_dir, content, named_file, own_dir
+from rotctl.listing import conf_dir, content, named_file, own_dir, usual
 from rotctl.log import collect
 from rotctl.plain import way
 from rotctl.tune.chart import plot, table
@@ -129,11 +129,10 @@ def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str
 
 def _chosen(result: SearchResult, group: str) -> str:
     """The choice of a group that a search started from."""
-    usual = [entry for entry in content(conf_dir() / "config.yaml")["defaults"] if entry != SELF]
     texts = [*result.search.space.base, *result.search.overrides]
     named = [text.partition("=")[2] for text in texts if text.startswith(f"{group}=")]
     known = [name for name in named if name in choices_of(group)]
-    return str(known[-1] if known else next(e[group] for e in usual if group in e))
+    return str(known[-1] if known else usual()[group])
 
 
 def _brought(name: str, group: str) -> dict[str, str]:
