@@ -115,6 +115,24 @@ def test_of_a_chain_each_part_is_shown():
     assert shares == pytest.approx([6.0, 1.0, 6.0])
 
 
+def test_who_begins_again_is_shown_from_the_first():
+    """Two tries of two parts: one look at the whole, in the order of time."""
+    log = log_of(8.0, stages=(2.0, 3.0), moves=(1.0, 7.0))
+    second = slice(round(4.0 * RATE), None)
+    log["command/stage"][second] = log["command/stage"][: round(4.0 * RATE)]
+    found = parts(log, log["trajectory/time"], (2, 1))
+    assert [(round(part.first / RATE, 2), round(part.last / RATE, 2)) for part in found] == [
+        (0.5, 7.5)
+    ]
+
+
+def test_a_part_that_goes_back_within_itself_is_a_part_still():
+    log = log_of(8.0, stages=(1.0, 2.0, 5.0), moves=(1.0, 7.0))
+    log["command/stage"][round(3.0 * RATE) : round(4.0 * RATE)] = 0
+    found = parts(log, log["trajectory/time"], (3, 1))
+    assert found[-1].first == round(5.0 * RATE)
+
+
 def test_an_older_log_tells_no_stages():
     log = log_of(6.0, moves=(0.0, 6.0))
     del log["command/stage"], log["disturbance/wrench"]

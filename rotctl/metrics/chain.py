@@ -51,7 +51,10 @@ class Span(Excerpt):
 
 
 def spans(log: Arrays, stages: Sequence[int]) -> list[Span]:
-    """The rows of each part that has begun, in their order; `stages` tells how many each has."""
+    """The rows of each part that has begun, in their order; `stages` tells how many each has.
+
+    Of a chain that began again they overlap, see `again`.
+    """
     stage = np.asarray(log["command/stage"])
     first = np.concatenate(([0], np.cumsum(stages))).tolist()
     found = []
@@ -60,6 +63,12 @@ def spans(log: Arrays, stages: Sequence[int]) -> list[Span]:
         if len(rows):
             found.append(Span(log, slice(int(rows[0]), int(rows[-1]) + 1), begin))
     return found
+
+
+def again(log: Arrays, stages: Sequence[int]) -> bool:
+    """Whether an earlier part ever goes on after a later one; a part by itself may go back."""
+    part = np.searchsorted(np.cumsum(stages), np.asarray(log["command/stage"]), side="right")
+    return bool((np.diff(part) < 0).any())
 
 
 def told(log: Arrays, links: Sequence[Link], parts: Sequence[Span], reasons: Sequence[str]) -> str:

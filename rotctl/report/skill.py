@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rotctl.metrics.chain import spans
+from rotctl.metrics.chain import again, spans
 from rotctl.metrics.columns import Arrays, floats
 from rotctl.metrics.dive import entry
 from rotctl.metrics.flip import longest_flight
@@ -44,7 +44,8 @@ def parts(log: Arrays, time: Array, stages: Sequence[int] = ()) -> list[Part]:
         time: of the rows that can be drawn [s].
         stages: how many each part of a chain has; of what is none they need not be told.
     """
-    return _of_a_chain(log, stages, len(time)) if len(stages) > 1 else _of_one(log, time)
+    chained = len(stages) > 1 and not again(log, stages)  # who begins again is shown from the first
+    return _of_a_chain(log, stages, len(time)) if chained else _of_one(log, time)
 
 
 def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
