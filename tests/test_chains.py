@@ -179,6 +179,8 @@ def test_parts_that_are_wrong(parts, message):
         (["behaviour.parts=[[a]]"], 'behaviour.parts[0]=["a"]: must be keys with values'),
         (["behaviour.parts=[{a:1}]"], 'behaviour.between="square": goes between parts that are '
          "texts, and these are in full; give null"),
+        (["behaviour.parts=[stand,forward_roll]", "+behaviour.again=0.3"], "behaviour: again=0.3: "
+         "acts on nothing, forward_roll rolls on; 'behaviour=NAME +finish=stand' comes to an end"),
         (["behaviour.rest.feet=[]"], "behaviour.rest.feet=[]: too few values, at least 1"),
     ],
 )  # fmt: skip

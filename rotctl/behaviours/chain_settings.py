@@ -84,6 +84,11 @@ class ChainSettings:
                     f"parts[{number}]: {part.behaviour.name} rolls on, and others follow it; "
                     "'behaviour=NAME +finish=stand' comes to an end"
                 )
+        if self.again is not None and not self.parts[-1].ends:
+            raise ValueError(
+                f"again={self.again:g}: acts on nothing, {self.parts[-1].behaviour.name} rolls on; "
+                "'behaviour=NAME +finish=stand' comes to an end"
+            )
 
     @property
     def roll_about(self) -> RollAbout:
