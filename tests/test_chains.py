@@ -7,6 +7,7 @@ import pytest
 from here import swept
 
 from rotctl import listing
+from rotctl.behaviours.until import After
 from rotctl.chained import composed
 from rotctl.config import load
 from rotctl.control.similar import similar_gains
@@ -22,6 +23,7 @@ from rotctl.results.table import table
 from rotctl.run import in_memory, run
 from rotctl.scenario import build, run_id
 from rotctl.schema import check
+from rotctl.simulation.known import StateSettings
 from rotctl.summary import links_of, summarise
 from rotctl.sweep.points import points
 from rotctl.wording import readable
@@ -326,6 +328,26 @@ def test_a_part_heads_where_the_feet_point(stands):
     x, y, z = axes[-1][0].tolist()
     assert (abs(y) > 0.0, z) == (True, 0.0)  # scattered feet are not quite straight
     assert x > 0.99
+
+
+@pytest.mark.parametrize(("about", "faces"), [("left", 1.0), ("right", -1.0)])
+def test_with_no_foot_down_a_part_heads_where_the_one_before_faced(about, faces):
+    """Who rolls about the right goes backward: its way leads where the back points."""
+    config = load([*QUICK, "behaviour.parts=[stand,stand]", "behaviour.between=null",
+                   "start=symmetric", "duration=0.1"])  # fmt: skip
+    first, second = config.behaviour.parts
+    (stage,) = first.behaviour.stages
+    stage = replace(stage, until=After("after", 0.05))
+    begins = replace(first.behaviour, roll_about=about, stages=(stage,))
+    parts = (replace(first, behaviour=begins), second)
+    facing = (1.0, 0.0, 0.0, 0.0) if faces > 0.0 else (0.0, 0.0, 0.0, 1.0)
+    aloft = StateSettings((0.0, 0.0), 1.0, facing, (0.0,) * 3, (0.0,) * 3, {}, {})
+    still = dict.fromkeys(("pitch", "speed_x", "angular_velocity_y"), (0.0, 0.0))
+    start = replace(config.start, **still, state=aloft)
+    behaviour = replace(config.behaviour, parts=parts)
+    log, summary = simulated(replace(config, start=start, behaviour=behaviour))
+    assert summary["parts_begun"] == 2
+    assert log["command/axes"][[0, -1], 0, 0] == pytest.approx([1.0, faces], abs=1e-3)
 
 
 def test_each_part_is_judged_by_itself(stands):

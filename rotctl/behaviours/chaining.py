@@ -174,13 +174,16 @@ class Chain:
     def _facing(self, memory: ChainMemory, state: State) -> float:
         """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they.
 
-        With no foot on the ground, say on its back, it is where the part that ends was heading.
+        With no foot on the ground, say on its back, it is where the part that ends was heading;
+        who rolls backward heads where the back points.
         """
         fronts = [forward(state, foot) for foot in sorted(self._feet)]
         if self._feet.isdisjoint(state.contacts.body.tolist()):
             behaviour: Behaviour[Any] = self._part(memory)
-            x, y, _ = behaviour.signals(memory.inner, _since(memory, state)).axes[0].tolist()
-            fronts = [(x, y)]
+            signals = behaviour.signals(memory.inner, _since(memory, state))
+            x, y, _ = signals.axes[0].tolist()
+            backward = dot(signals.axis, state.trunk_axes[:, 1]) < -0.5  # about the trunk's right
+            fronts = [(-x, -y) if backward else (x, y)]
         return degrees(atan2(fsum(y for _, y in fronts), fsum(x for x, _ in fronts)))
 
     def _height(self, state: State) -> float:
