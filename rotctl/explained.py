@@ -13,7 +13,7 @@ from rotctl.checked import brief, clip, unknown_key
 from rotctl.errors import InputError
 from rotctl.listing import choices
 from rotctl.overrides import is_choice
-from rotctl.plain import NOTHING, dotted, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, member, put, way
 from rotctl.schema import check
 
 
@@ -43,6 +43,10 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
     for depth, part in enumerate(parts):
         inner = member(place, part)
         if inner is NOTHING:
+            sets = not override.is_add() and not override.is_delete()
+            last = depth + 1 == len(parts) and isinstance(part, str) and isinstance(place, dict)
+            if sets and last and _may_add(valid, parts, override.value()):
+                return f"{key} is not there yet; write +{key}=VALUE"
             none = f"none, it is {'null' if place is None else 'a value'}"
             some = list(place) if isinstance(place, dict) else [none]
             return unknown_key(key, dotted(parts[:depth]), some)
@@ -59,3 +63,19 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
     except InputError as error:
         return str(error)
     return f"{key}={brief(value)}: has keys that are not there yet; write +{key}=VALUE"
+
+
+def _may_add(valid: dict[str, Any], parts: Way, value: Any) -> bool:
+    """Whether settings have a key that this config leaves out, and the value is one for it.
+
+    Where any key will do nobody knows whether this one is meant.
+    """
+    return _passes(put(valid, parts, value)) and not _passes(put(valid, (*parts[:-1], "?"), value))
+
+
+def _passes(data: dict[str, Any]) -> bool:
+    try:
+        check(data)
+    except InputError:
+        return False
+    return True

@@ -182,6 +182,18 @@ def test_bad_input_is_one_line_that_helps(override, message):
     assert complaint(override) == message
 
 
+def test_a_key_that_is_left_out_is_told_to_be_added():
+    """Where settings have it and the value is one for it; else it is not known."""
+    assert complaint("behaviour=chain", "behaviour.again=0.3") == (
+        "behaviour.again is not there yet; write +behaviour.again=VALUE"
+    )
+    unknown = "unknown key 'behaviour.again'; valid keys under behaviour: name, kind, parts, "
+    assert complaint("behaviour=chain", "behaviour.again=-1").startswith(unknown)
+    assert complaint("behaviour.poses.a.nose=1").startswith(
+        "unknown key 'behaviour.poses.a.nose'; valid keys under behaviour.poses.a: waist_y, "
+    )
+
+
 @pytest.fixture(scope="module")
 def plain():
     """The default config as plain data, as Hydra composes it."""
