@@ -135,6 +135,13 @@ def test_who_has_not(log, reason):
     assert judged_stand(log) == reason
 
 
+def test_what_may_touch_is_named_where_it_is_more_than_feet():
+    tipped = replace(LANDING, feet=("foot_l", "foot_r", "forearm_l"))
+    assert judged_stand(stand(on=np.r_[np.full(177, 2), np.full(3, 3)]), tipped) == (
+        "touched the ground with more than foot_l, foot_r, forearm_l for 0.05 s"
+    )
+
+
 def test_who_lands_may_crouch_and_then_stands_for_two_seconds():
     crouched = np.r_[1.0, np.full(59, 0.6), np.ones(120)]
     assert judged_stand(stand(height=crouched)) == "sank to 0.60 of its height"

@@ -91,11 +91,13 @@ def on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
 def failure(metrics: StandingMetrics, criteria: StandingCriteria, duration: float) -> str:
     """Why it did not stay up; empty if it did. `duration` is the run's [s]."""
     m, c = metrics, criteria
+    feet = all(name.startswith("foot") for name in c.feet)
+    allowed = "the feet" if feet else ", ".join(c.feet)
     low = m.stature_least if c.kind == "standing" else m.stature_end
     rules = (
         (
             m.other_contact == 0.0,
-            f"touched the ground with more than the feet for {m.other_contact:.2f} s",
+            f"touched the ground with more than {allowed} for {m.other_contact:.2f} s",
         ),
         (low > c.height, f"sank to {low:.2f} of its height"),
         (m.lean_end < c.lean, f"leans by {m.lean_end:.0f} deg at the end"),
