@@ -15,8 +15,10 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.mechanics.model import Model
 from rotctl.scenario import model_of
+from rotctl.schema import Config, changed
 from rotctl.simulation.clearance import clearance
 
+LONGEST = 1e4  # [s] no run is as long
 RANGES = (  # of a start, around the state: none
     "pitch",
     "speed_x",
@@ -35,14 +37,14 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
 
     Raises:
         InputError: there is a start of that name, or no such time; nothing is written.
-        LogError: the log is damaged, or its config makes no run here.
+        LogError: the log is damaged, its config makes no run here, or its state no start.
     """
     path = own_folder.free("start", name)
     config = recorded(log)
     times = log["trajectory/time"]
     row = _row(log, times, at)
     state = _state(log, model_of(config), row)
-    seconds = f"{times[row]:.2f} s"
+    seconds = f"{_short(times[row])} s"
     data = {
         "name": name,
         "description": f"As {config.behaviour.name}, seed {config.seed}, was at {seconds}.",
@@ -51,6 +53,7 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
         "tilt": 0.0,
         "state": state,
     }
+    _check(log, config, data)
     run = brief(log.attributes["run_id"])  # a stranger's text, which must not end the comment
     head = f"# From the run {run}, at {seconds}; see docs/getting_up.md\n"
     text = yaml.safe_dump(data, sort_keys=False, default_flow_style=None, width=100)
@@ -61,12 +64,27 @@ def _row(log: RunLog, times: np.ndarray, at: float | None) -> int:
     """Of the time; the nearest one."""
     if not len(times):
         raise LogError(f"{log.path}: has no rows, the run ended before its first step")
+    if not np.isfinite(times).all():
+        raise LogError(f"{log.path}: has times that are not finite")
     if at is None:
         return len(times) - 1
     first, last = float(times[0]), float(times[-1])
     if not first <= at <= last:
-        raise InputError(f"--at={at:g}: the run has states from {first:g} to {last:.2f} s")
+        raise InputError(f"--at={at:g}: the run has states from {first:g} to {_short(last)} s")
     return int(np.abs(times - at).argmin())
+
+
+def _short(time: float) -> str:
+    """A time [s] to the hundredth; one that no run reaches does not fill a page."""
+    return f"{time:.2f}" if abs(time) < LONGEST else f"{time:.6g}"
+
+
+def _check(log: RunLog, config: Config, start: dict[str, Any]) -> None:
+    """Refuse what would not load again: a stranger's log may hold any number."""
+    try:
+        changed(config, {"start": start})
+    except InputError as error:
+        raise LogError(f"{log.path}: its state there makes no start: {error}") from None
 
 
 def _state(log: RunLog, model: Model, row: int) -> dict[str, Any]:

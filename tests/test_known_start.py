@@ -17,6 +17,7 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.recorded_start import make
 from rotctl.scenario import build
+from rotctl.simulation.clearance import clearance
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.known import Known, StateSettings, pitch
 from rotctl.simulation.start import beginning
@@ -122,6 +123,12 @@ def test_the_lowest_point_is_at_the_gap():
     assert data.qpos[:2].tolist() == [0.5, -0.2]
 
 
+def test_a_gap_of_nothing_is_kept():
+    """It was so in a run: it is not sunk in by what other starts sink in."""
+    scenario, data = beside(replace(STATE, gap=0.0))
+    assert clearance(scenario.model, data) == pytest.approx(0.0, abs=1e-12)
+
+
 def test_joints_are_as_they_are_said_to_be_beyond_their_stops_too():
     scenario, data = beside()
     model = scenario.model
@@ -145,9 +152,8 @@ def test_a_start_is_turned_and_pushed_from_there():
     spin = 1.5 * axes[2]
     expected = np.array(STATE.velocity) + 0.7 * axes[0] + np.cross(spin, offset)
     assert data.qvel[:3] == pytest.approx(expected)
-    own = expected_spin = data.xmat[1].reshape(3, 3).T @ spin
+    own = data.xmat[1].reshape(3, 3).T @ spin
     assert data.qvel[3:6] == pytest.approx(np.array(STATE.angular_velocity) + own)
-    assert expected_spin.any()
     assert plain.qvel[:3].tolist() == list(STATE.velocity)
 
 
@@ -230,12 +236,57 @@ def test_a_log_whose_states_are_of_another_body_is_refused(recorded, here, tmp_p
         make("there", lying, None)
 
 
-def test_a_quaternion_of_no_length_is_refused():
+NO_LENGTH = "orientation: must be at least 0.001 long, as 1, 0, 0, 0 is, which is upright"
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "value", "complaint"),
+    [
+        ("qpos", slice(3, 7), 0.0, f"start.state: {NO_LENGTH}"),
+        ("qpos", 0, 1e15, "start.state.place[0]=1000000000000000.0: must be at most 1e+13 in size"),
+        ("qpos", 9, 1e300, "start.state.pose.waist_z=1e+300: must be at most 1e+13 in size"),
+        ("qvel", 1, -1e20, "start.state.velocity[1]=-1e+20: must be at most 1e+13 in size"),
+    ],
+)
+def test_a_strangers_state_that_would_not_load_is_not_written(
+    recorded, here, tmp_path, name, column, value, complaint
+):
+    rows = recorded[f"trajectory/{name}"].copy()
+    rows[-1, column] = value
+    strange = with_arrays(recorded, tmp_path, {f"trajectory/{name}": rows})
+    with pytest.raises(LogError) as caught:
+        make("there", strange, None)
+    assert str(caught.value) == f"{strange.path}: its state there makes no start: {complaint}"
+    assert not (here / "conf").exists()
+
+
+@pytest.mark.parametrize("at", [None, 0.5])
+def test_times_that_are_none_choose_no_row(recorded, here, tmp_path, at):
+    times = recorded["trajectory/time"].copy()
+    times[3] = np.nan
+    strange = with_arrays(recorded, tmp_path, {"trajectory/time": times})
+    with pytest.raises(LogError) as caught:
+        make("there", strange, at)
+    assert str(caught.value) == f"{strange.path}: has times that are not finite"
+    assert not (here / "conf").exists()
+
+
+def test_a_time_of_three_hundred_digits_is_told_in_short(recorded, here, tmp_path):
+    times = recorded["trajectory/time"].copy()
+    times[-1] = 1e300
+    strange = with_arrays(recorded, tmp_path, {"trajectory/time": times})
+    assert ", at 1e+300 s; see" in make("there", strange, None).read_text()
+    with pytest.raises(InputError, match=r"^--at=-1: the run has states from 0 to 1e\+300 s$"):
+        make("other", strange, -1.0)
+
+
+@pytest.mark.parametrize("w", [0, 0.0009])
+def test_a_quaternion_of_no_length_is_refused(w):
     said = ",".join(
-        ["place:[0,0]", "gap:0", "orientation:[0,0,0,0]", "velocity:[0,0,0]"]
+        ["place:[0,0]", "gap:0", f"orientation:[{w},0,0,0]", "velocity:[0,0,0]"]
         + ["angular_velocity:[0,0,0]", "pose:{}", "speeds:{}"]
     )
-    with pytest.raises(InputError, match=r"start\.state: .*orientation: must not be all 0"):
+    with pytest.raises(InputError, match=rf"start\.state: {NO_LENGTH}"):
         load(["start=rest", f"+start.state={{{said}}}"])
 
 

@@ -21,7 +21,8 @@ class StateSettings:
     Attributes:
         place: x and y of the pelvis [m].
         gap: between the lowest point and the ground [m]; negative where it has sunk in.
-        orientation: of the pelvis, quaternion w, x, y, z [-]; of any length.
+        orientation: of the pelvis, quaternion w, x, y, z [-]; of any length from
+            `LEAST` on.
         velocity: of the pelvis [m/s].
         angular_velocity: of the pelvis, in its own frame [rad/s].
         pose: joint angles by name [rad]; those not named are 0.
@@ -38,7 +39,9 @@ class StateSettings:
 
     def __post_init__(self) -> None:
         if dotted(self.orientation, self.orientation) < LEAST**2:
-            raise ValueError("orientation: must not be all 0, as 1, 0, 0, 0 is upright")
+            raise ValueError(
+                f"orientation: must be at least {LEAST:g} long, as 1, 0, 0, 0 is, which is upright"
+            )
 
 
 @dataclass(frozen=True)

@@ -260,7 +260,8 @@ def place(model: Model, data: mujoco.MjData, start: Start, usual: Placement, axe
         place[2] = model.ground.height(*place[:2].tolist()) + start.height
         data.qpos[:3] += place - data.subtree_com[ROOT_BODY]
     else:
-        data.qpos[2] += (start.gap or -SINK) - clearance(model, data)
+        gap = (start.gap or -SINK) if known is None else start.gap
+        data.qpos[2] += gap - clearance(model, data)
     mujoco.mj_kinematics(mj, data)
     mujoco.mj_comPos(mj, data)
     offset = data.xpos[ROOT_BODY] - data.subtree_com[ROOT_BODY]
