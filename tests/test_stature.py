@@ -1,6 +1,7 @@
 """Another height, weight and strength: the same motion, slower, by the law of similarity."""
 
 from dataclasses import fields
+from types import NoneType
 from typing import get_args, get_type_hints
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from rotctl.behaviours.aims import Aim
 from rotctl.behaviours.launch import Launch, Whirl
+from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import UNITS
 from rotctl.behaviours.similar import similar as asking
 from rotctl.behaviours.until import Until
@@ -109,11 +111,18 @@ def test_what_is_asked_for_has_its_units():
     assert air.speed_x == start.speed_x
 
 
-WITHOUT = {  # shares, angles and gains, which are for all the same
+WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are for all the same
     "Bow.angle", "Face.share", "Turn.most", "Capture.gain", "Capture.lunge", "Stepping.spin",
     "Lean.gain", "Launch.gain", "Whirl.amount", "Poise.gain", "Carry.gain", "Carry.angles",
     "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Tilted.angle",
-    "Launched.knee", "Leaves.angle",
+    "Launched.knee", "Leaves.angle", "CatchSettings.free", "CatchSettings.gain",
+    "CatchSettings.out", "FinishSettings.after", "FinishSettings.ahead",
+    "FinishSettings.revolutions", "FinishSettings.within", "PaceSettings.approach",
+    "PaceSettings.back", "PaceSettings.brake", "PaceSettings.calm", "PaceSettings.gain",
+    "PaceSettings.most", "PaceSettings.patience", "PaceSettings.schedule", "PaceSettings.surge",
+    "PaceSettings.surge_from", "PaceSettings.swing", "PaceSettings.swing_from",
+    "PaceSettings.wait", "PaceSettings.width", "PathSettings.ahead", "PathSettings.legs",
+    "PathSettings.most", "PathSettings.pull", "RatesSettings.schedule",
 }  # fmt: skip
 
 
@@ -122,9 +131,17 @@ def numbers(shape):
     return {name for name, kind in get_type_hints(shape).items() if "float" in str(kind)}
 
 
+def parts_of_a_roll():
+    """What keeps a roll at its pace, on its course and off its side, and ends it."""
+    kinds = get_type_hints(RollingSettings)
+    named = [kinds[name] for name in ("pace", "finish", "course", "catch")]
+    return [part for kind in named for part in get_args(kind) if part is not NoneType]
+
+
 def test_every_number_of_an_aim_or_a_condition_has_a_unit_or_is_known_to_have_none():
     shapes = [shape for union in (Aim, Until) for shape in get_args(get_args(union)[0])]
     assert len(shapes) > 30
+    shapes += parts_of_a_roll()
     said = {f"{shape.__name__}.{name}" for shape in shapes for name in UNITS.get(shape, {})}
     assert not said & WITHOUT
     assert {f"{s.__name__}.{name}" for s in shapes for name in numbers(s)} == said | WITHOUT
@@ -143,6 +160,12 @@ def test_a_cartwheel_is_asked_for_in_its_units():
     before, after = settings.stages, found.stages
     assert after[1].until.after == 2 * before[1].until.after
     assert after[2].until.distance == 4 * before[2].until.distance
+
+
+def test_a_taller_body_looks_further_ahead_for_what_tips_it():
+    settings = load(["behaviour=forward_roll", "+catch=arm"]).behaviour
+    found = asking(settings, Likeness(size=4.0, mass=3.0))
+    assert (found.catch.lead, found.catch.out) == (2 * settings.catch.lead, settings.catch.out)
 
 
 @pytest.mark.parametrize("known", [aloft.UNITS, falling.UNITS, UNITS])

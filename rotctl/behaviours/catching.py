@@ -57,11 +57,13 @@ class Catch:
         """
         self.settings = settings
         known = {name: motor for motor, name in enumerate(model.joint_names)}
-        both = [name[: -len(SIDES[0])] for name in known if name.endswith(SIDES[0])]
+        limbs = [name[: -len(SIDES[0])] for name in known if name.endswith(SIDES)]
+        both = {limb for limb in limbs if {limb + side for side in SIDES} <= known.keys()}
         for joint in settings.out:
             if model.motors(joint, f"behaviour.catch.out.{joint}") and joint not in both:
+                where = "one side alone" if joint in limbs else "no limb on either side"
                 raise InputError(
-                    f"behaviour.catch.out.{joint} is of no limb on either side; "
+                    f"behaviour.catch.out.{joint} is of {where}; "
                     f"valid joints: {', '.join(sorted(both))}"
                 )
         sides = SIDES if about == "left" else SIDES[::-1]

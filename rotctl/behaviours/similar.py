@@ -10,6 +10,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from rotctl.behaviours.balance import Capture, Lunge
+from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.chain_settings import ChainSettings, PartSettings
 from rotctl.behaviours.chaining import RestSettings
 from rotctl.behaviours.finishing import FinishSettings
@@ -111,6 +112,7 @@ UNITS: Units = {
     PaceSettings: all_of(length, "travel", "ahead")
     | all_of(rate, "own", "settling")
     | all_of(speed, "easing"),
+    CatchSettings: all_of(time, "lead"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
     ChainSettings: all_of(length, "again"),
     RestSettings: all_of(time, "seconds") | all_of(speed, "speed"),
