@@ -15,6 +15,7 @@ from rotctl.log import RunLog
 from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl
 from rotctl.report.filmstrip import filmstrip
+from rotctl.report.rows import window
 from rotctl.report.title import verdict
 from rotctl.run import LOG_NAME, run
 
@@ -149,6 +150,16 @@ def test_a_run_that_broke_down_is_drawn_until_there(log, picture, tmp_path):
     last = log["trajectory/time"][18]
     with pytest.raises(InputError, match=rf"^end \(--to\) is 0.45 s, valid: 0 to {last:g} s$"):
         filmstrip(broken, picture, end=0.45)
+
+
+@pytest.mark.parametrize("end", [0.5, 0.49])
+def test_a_run_may_be_drawn_until_it_is_over(end):
+    """Which it is a control step after its last row begins."""
+    time = np.arange(30) / 60
+    assert window(time, 0.1, end) == (6, 29)
+    assert window(time[:1], None, 0.0) == (0, 0)
+    with pytest.raises(InputError, match=r"^end \(--to\) is 0.501 s, valid: 0 to 0.483333 s$"):
+        window(time, None, 0.501)
 
 
 def test_a_run_without_a_drawable_step_is_refused(log, picture, tmp_path):

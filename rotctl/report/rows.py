@@ -51,11 +51,16 @@ def drawable(log: RunLog, states: Array) -> Array:
 def window(time: Array, start: float | None, end: float | None) -> tuple[int, int]:
     """First and last row from `start` to `end` [s]; all rows where neither is given.
 
+    A run ends a control step after its last row begins: `end` may be there, too.
+
     Raises:
         InputError: a time is not in the log, or start is not before end.
     """
     first = nearest(time, "start (--from)", float(time[0]) if start is None else start)
-    last = nearest(time, "end (--to)", float(time[-1]) if end is None else end)
+    until = float(time[-1])
+    over = until + float(time[1] - time[0] if len(time) > 1 else 0.0)
+    reached = until if end is None or until < end <= over + 1e-9 else end
+    last = nearest(time, "end (--to)", reached)
     if start is not None and end is not None and start >= end:
         raise InputError(f"start (--from) is {start:g} s, valid: less than end = {end:g} s")
     return first, last
