@@ -55,6 +55,18 @@ def complaint(chosen, changes):
          "behaviour: a task is to balance over bodies that cannot stand"),
         (STAND, {"behaviour.tasks.spin.aim.task": "spin"},
          "behaviour: the aim lunge is for a task 'spin' that captures"),
+        (["behaviour=cartwheel"], {"behaviour.stages.2.tasks.carry.aim.hands": ["tail"]},
+         "behaviour.stages.2.tasks.carry.aim.hands names the unknown body 'tail'; "
+         f"bodies: {BODIES}"),
+        (STAND, {"behaviour.tasks.balance.aim.bodies": ["tail"]},
+         f"behaviour.tasks.balance.aim.bodies names the unknown body 'tail'; bodies: {BODIES}"),
+        (["behaviour=baby_roll_over"], {"behaviour.stages.2.lead": 0.0},
+         "behaviour.stages[2]: beyond=1: the stage 'lie' must have poses and a lead, which is how "
+         "far ahead they go"),
+        (["behaviour=handstand"],
+         {"behaviour.stages.1.beyond": 0.5, "behaviour.stages.1.lead": 0.1},
+         "behaviour.stages[1]: beyond=0.5: the stage 'bow' must have poses and a lead, which is "
+         "how far ahead they go"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
         (STAND, {"criteria.feet": ["foot"]},
          f"criteria.feet names the unknown body 'foot'; did you mean foot_r? bodies: {BODIES}"),

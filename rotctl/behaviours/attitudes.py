@@ -21,7 +21,7 @@ class Upright:
 
     law: Literal["upright"]
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -42,7 +42,7 @@ class Bow:
     law: Literal["bow"]
     angle: Finite
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -63,7 +63,7 @@ class Face:
     law: Literal["face"]
     share: Fraction
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -82,7 +82,7 @@ class Plane:
 
     law: Literal["plane"]
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:

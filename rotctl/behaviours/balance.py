@@ -50,9 +50,9 @@ class Capture:
     lunge_most: NonNegative = 0.0
     rise: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
@@ -112,7 +112,7 @@ class Lunge:
     task: str
     fade: Positive
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:

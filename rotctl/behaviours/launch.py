@@ -53,9 +53,9 @@ class Lean:
     steady: Positive
     ahead: Finite = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
@@ -98,9 +98,9 @@ class Launch:
     soonest: Positive
     most: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
@@ -144,7 +144,7 @@ class Whirl:
     least: NonNegative = 0.0
     ceiling: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:

@@ -37,9 +37,9 @@ class Bring:
     seconds: Positive
     soonest: Positive
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_id(model.mj, self.body, KEY)
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_id(model.mj, self.body, f"{key}.body")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration: along the ground alone, and none upward."""

@@ -21,7 +21,7 @@ class Watch:
 
     law: Literal["watch"]
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -41,7 +41,7 @@ class Ground:
     law: Literal["ground"]
     height: NonNegative
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -70,9 +70,9 @@ class Above:
     most: Positive
     ahead: Finite = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
@@ -102,9 +102,9 @@ class Opposite:
     ahead: NonNegative
     height: NonNegative
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, [self.body], f"{key}.body")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""

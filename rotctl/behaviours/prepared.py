@@ -1,6 +1,6 @@
 """A stage made ready for one model: its tasks, what fills them, its gains and its law of poses."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,8 +44,9 @@ class Prepared:
 
 
 def prepared(
+    number: int,
     stage: Stage,
-    every: dict[str, TaskSettings],
+    common: Mapping[str, TaskSettings],
     names: Sequence[str],
     axes: Array,
     control: ControllerSettings,
@@ -54,24 +55,27 @@ def prepared(
     """Make a stage ready.
 
     Args:
-        every: its tasks, and those that the behaviour has in all stages, by name.
+        number: of the stage among the behaviour's.
+        common: tasks that the behaviour has in all stages, by name.
         names: of all tasks of the behaviour, see `task_names`.
         axes: rows are the behaviour's forward, left and up.
 
     Raises:
         InputError: a body is not there, or a task has no gains.
     """
+    every = {**common, **stage.tasks}
     rows: list[Tasks] = []
     filled: list[tuple[int, str, Aim]] = []
     slots: list[int] = []
     named = {name: wanted.gains or name for name, wanted in every.items()}
     gains = gains_of(control, tuple(named.values()))
     for name, wanted in every.items():
-        key = f"behaviour.stages.{stage.name}.tasks.{name}.body"
-        bodies = body_ids(model.mj, [wanted.body], key) if wanted.body else [0]
+        own = f"stages.{number}." if name in stage.tasks else ""
+        key = f"behaviour.{own}tasks.{name}"
+        bodies = body_ids(model.mj, [wanted.body], f"{key}.body") if wanted.body else [0]
         for body, slot in zip(bodies, task_names(model, name, wanted), strict=True):
             if wanted.aim:
-                wanted.aim.check(model)
+                wanted.aim.check(model, f"{key}.aim")
                 filled.append((len(rows), wanted.kind, wanted.aim))
             number = kind(wanted.kind).number
             rows.append(task(number, gains[named[name]], axes, body, wanted.point))

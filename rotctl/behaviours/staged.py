@@ -98,8 +98,8 @@ class Staged:
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
         self._parts = [
-            prepared(stage, settings.tasks | stage.tasks, self.tasks, self.axes, control, model)
-            for stage in self._stages
+            prepared(number, stage, settings.tasks, self.tasks, self.axes, control, model)
+            for number, stage in enumerate(self._stages)
         ]
         self._poses = [
             pose_law(stage, settings.shape, self._frame, self._target, model)

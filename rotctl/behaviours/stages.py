@@ -86,7 +86,7 @@ class Stage:
         contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
         beyond: and beyond the target by this multiple of what is missing: a body that lies short of
-            it shifts its limbs on [-].
+            it shifts its limbs on [-]; no further ahead than `lead`.
         held_out: bodies whose contacts control may not use;
         toes: of which it may use those in front of their middle alone, so that heels can rise.
         lying: the way, left and phase are from here on those of how the body lies as the stage
@@ -122,6 +122,11 @@ class Stage:
             raise ValueError(
                 f"the stage {self.name!r} must have one of poses, rise, turn, glide, reach and "
                 f"flight, not {given}"
+            )
+        if self.beyond and not (self.poses and self.lead):
+            raise ValueError(
+                f"beyond={self.beyond:g}: the stage {self.name!r} must have poses and a lead, "
+                "which is how far ahead they go"
             )
 
 

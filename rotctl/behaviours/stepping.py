@@ -75,9 +75,10 @@ class Stepping:
     facing: Facing = "front"
     narrow: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        self._feet(model)
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        for body in self.bodies:
+            body_id(model.mj, body, f"{key}.bodies")
 
     def next(self, scene: Scene) -> Step:
         """The step of this instant, from that of the control step before."""
@@ -187,7 +188,7 @@ class Heading:
     law: Literal["heading"]
     facing: Facing = "front"
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:

@@ -92,9 +92,10 @@ class Carry:
     angles: tuple[Finite, Finite]
     throw: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies + self.hands, KEY)
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
+        body_ids(model.mj, self.hands, f"{key}.hands")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
@@ -159,9 +160,9 @@ class Place:
     height: Finite
     ahead: Finite = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_id(model.mj, self.beyond, KEY)
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_id(model.mj, self.beyond, f"{key}.beyond")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
@@ -203,7 +204,7 @@ class Stride:
     lift: NonNegative
     height: Finite
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
