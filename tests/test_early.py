@@ -39,10 +39,19 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
             [*COUNTED, "behaviour.finish.revolutions=1", "duration=1"],
             r"1.00 s, 0.\d\d s after it was told to end: it still rolls",
         ),
+        (["behaviour=pirouette_one_foot", "duration=1"], "1.00 s, before it turns"),
+        (
+            ["behaviour=pirouette_one_foot", "behaviour.target_excursion=-360", "duration=2.3"],
+            r"2.30 s, turned by -\d+ of -360 deg",
+        ),
+        (
+            ["behaviour=pirouette_one_foot", "duration=4", "seed=2014"],
+            r"4.00 s, \d.\d\d s after it was there: it is to rest for 2 s",
+        ),
     ],
 )
 def test_the_end_of_a_short_run_is_its_reason(overrides, reason):
-    found = make(load([*overrides, "seed=2000"])).summary["failure_reason"]
+    found = make(load(["seed=2000", *overrides])).summary["failure_reason"]
     assert re.fullmatch(f"the run ends at {reason}", found), found
 
 

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from rotctl.behaviours.pivoting import Bring
 from rotctl.config import load
 from rotctl.control.task import TASK
+from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
 from rotctl.metrics.one_foot import judge, measure
 from rotctl.run import in_memory
@@ -19,7 +20,7 @@ from rotctl.scenario import build
 PERIOD = 1 / 240
 
 
-STARTS = (2012, 2014)
+STARTS = (2012, 2014, 2000, 2001, 2002)
 
 
 def turned(target, seed):
@@ -41,7 +42,10 @@ def turned(target, seed):
 
 @pytest.fixture(scope="module")
 def turns():
-    """Half turns to the left, and to the right; of two starts one stands, nine of ten do."""
+    """Half turns to the left, and to the right; of five starts one stands.
+
+    Of all, 88 % do to the left and 72 % to the right: that none of five does is one case in 600.
+    """
     found = {}
     for target in (180.0, -180.0):
         for seed in STARTS:
@@ -58,6 +62,22 @@ def test_it_turns_on_one_foot_and_stands(turns, target):
     assert reason == ""
     assert columns["revolved"] == pytest.approx(target, abs=15.0)
     assert columns["turned_alone"] > 90.0
+
+
+@pytest.mark.parametrize("target", [0, 90, -270, 1000])
+def test_a_turn_that_it_is_not_made_for_is_refused(target):
+    with pytest.raises(InputError) as caught:
+        load(["behaviour=pirouette_one_foot", f"behaviour.target_excursion={target}"])
+    assert str(caught.value) == (
+        f"behaviour: target_excursion={target}: pirouette_one_foot is a motion of "
+        "-360 or -180 or 180 or 360 deg"
+    )
+
+
+def test_a_body_that_is_not_there_is_told_with_its_place():
+    key = "behaviour.stages.1.tasks.over.aim.body"
+    with pytest.raises(InputError, match=f"^{key} names the unknown body 'foot_x'; did you mean"):
+        build(load(["behaviour=pirouette_one_foot", f"{key}=foot_x"]))
 
 
 @pytest.mark.parametrize(("target", "foot"), [(180.0, "foot_l"), (-180.0, "foot_r")])

@@ -10,7 +10,8 @@ from rotctl.metrics import finish
 from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
 from rotctl.metrics.finish import FinishCriteria
-from rotctl.metrics.flip import HOP, FlipCriteria, longest_flight
+from rotctl.metrics.flip import HOP, FlipCriteria, longest_flight, turn
+from rotctl.metrics.one_foot import OneFootCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria, on_others
@@ -71,6 +72,8 @@ def _missing(
         return "" if on_others(log, criteria.feet).any() else _standing(log, criteria.rest, period)
     if isinstance(criteria, DiveCriteria):
         return "" if entry(log) is not None else _before_the_end_of_a_flight(log, period)
+    if isinstance(criteria, OneFootCriteria):
+        return _on_one_foot(log, criteria, commanded["target_excursion"], lasted, period)
     if not isinstance(criteria, FlipCriteria) or on_others(log, criteria.landing.feet).any():
         return ""
     _, landed = longest_flight(log)
@@ -103,6 +106,25 @@ def _before_the_turn(
     if lasted >= criteria.within or not turns * target > TURNS * abs(target):
         return ""
     return f"turned by {columns['turned']:.0f} of {target:.0f} deg: it has {criteria.within:g} s"
+
+
+def _on_one_foot(
+    log: Arrays, criteria: OneFootCriteria, target: float, lasted: float, period: float
+) -> str:
+    """Who winds up turns the other way at first; who turned too far or fell is not early."""
+    if on_others(log, criteria.landing.feet).any():
+        return ""
+    way = math.copysign(1.0, target)
+    turned = way * turn(log, "up")
+    off = np.abs(turned - abs(target)) >= criteria.turn
+    if not off[-1]:
+        there = int(np.flatnonzero(off)[-1]) + 1 if off.any() else 0
+        return _resting("it was there", there * period, lasted, criteria.landing.rest)
+    if turned.max() < criteria.turn:
+        return "before it turns"
+    turns = way * float(in_frame(log, "trajectory/angular_velocity")[-1, 2])
+    short = turned[-1] < abs(target) and turns > TURNS
+    return f"turned by {way * turned[-1]:.0f} of {target:.0f} deg" if short else ""
 
 
 def _standing(log: Arrays, rest: float, period: float) -> str:
