@@ -92,6 +92,7 @@ def test_contacts_with_boxes_carry_the_character(scenario, hit):
     inertial = np.empty(mj.nv)
     mujoco.mj_mulM(mj, hit, inertial, hit.qacc)
     assert np.abs(force).max() > 10.0
+    # Newton's method ends before the residual is 0: 3e-6 of the force were measured.
     assert inertial[:3] + hit.qfrc_bias[:3] == pytest.approx(force, rel=1e-5, abs=1e-3)
 
 

@@ -32,23 +32,24 @@ def lying(behaviour, duration, more=(), **state):
 
 @pytest.fixture(scope="module")
 def rocked():
-    """Who lies on the back or the left side: rows of some starts."""
-    made = {}
-    for start in ("supine", "side"):
-        config = load(["behaviour=rock_up", f"start={start}", "duration=5"])
-        made[start] = [simulated(changed(config, {"seed": seed})) for seed in (2000, 2003, 2012)]
-    return made
+    """Who lies on the back: rows of some starts."""
+    config = load(["behaviour=rock_up", "start=supine", "duration=5"])
+    return [simulated(changed(config, {"seed": seed})) for seed in (2000, 2003, 2012)]
 
 
 @pytest.mark.parametrize("start", ["supine", "side"])
-def test_of_three_starts_one_stands_within_four_seconds(rocked, start):
-    """Four of five do, each by itself."""
-    assert any(not judge(log, UP, 1 / 60, UPRIGHT)[1] for log in rocked[start])
+def test_of_six_starts_one_stands_within_four_seconds(start):
+    """Of all, 89 of 100 do from the back and 57 from a side: that none of six does is 1 in 150."""
+    made = (
+        simulated(load(["behaviour=rock_up", f"start={start}", f"seed={seed}", "duration=5"]))
+        for seed in (2000, 2003, 2012, 2001, 2002, 2004)
+    )
+    assert any(not judge(log, UP, 1 / 60, UPRIGHT)[1] for log in made)
 
 
 def test_hips_rise_over_the_head_before_the_feet_come_down(rocked):
     """It goes over the shoulders: nothing but the back, the head and arms is on the ground."""
-    for log in rocked["supine"]:
+    for log in rocked:
         row = int(np.argmax(log["command/stage"] == ROLL))
         touching = {log["model/body"][body] for body in log["contacts/body"][row] if body > 0}
         assert touching <= {b"waist", b"chest", b"head", b"forearm_l", b"forearm_r", b"upper_arm_l",
@@ -58,7 +59,7 @@ def test_hips_rise_over_the_head_before_the_feet_come_down(rocked):
 
 def test_the_roll_goes_where_the_feet_lay(rocked):
     """From the back, whose feet are in the air as the roll begins, on along the body."""
-    for log in rocked["supine"]:
+    for log in rocked:
         long = log["trajectory/trunk_axes"][0, :2, 2]
         row = int(np.argmax(log["command/stage"] == ROLL))
         way = log["command/axes"][row, 0, :2]
