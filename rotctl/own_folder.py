@@ -42,7 +42,8 @@ def make(kind: str, name: str, source: str) -> Path:
     """
     path, there = free(kind, name), named_files(kind)
     if source not in there:
-        raise InputError(f"--from={source}: no such {kind}; {instead(source, there)}")
+        what = "start or run" if kind == "start" else kind
+        raise InputError(f"--from={source}: no such {what}; {instead(source, there)}")
     text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
     text = _NAME.sub(f"name: {name}", text, count=1)
     copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"

@@ -19,6 +19,7 @@ from rotctl.schema import Config, changed
 from rotctl.simulation.clearance import clearance
 
 LONGEST = 1e4  # [s] no run is as long
+DEEP = 0.2  # [m] that no soft ground gives way by
 RANGES = (  # of a start, around the state: none
     "pitch",
     "speed_x",
@@ -36,7 +37,8 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
         at: which row, by its time [s]; the last one if None.
 
     Raises:
-        InputError: there is a start of that name, or no such time; nothing is written.
+        InputError: there is a start of that name, no such time, or the state of it is under
+            water; nothing is written.
         LogError: the log is damaged, its config makes no run here, or its state no start.
     """
     path = own_folder.free("start", name)
@@ -54,8 +56,14 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
         "state": state,
     }
     _check(log, config, data)
+    if state["gap"] < -DEEP:
+        raise InputError(
+            f"--at={_short(times[row])}: the run is {-state['gap']:.2f} m below the ground then, "
+            "as in water; choose an earlier time"
+        )
     run = brief(log.attributes["run_id"])  # a stranger's text, which must not end the comment
-    head = f"# From the run {run}, at {seconds}; see docs/getting_up.md\n"
+    ground = f"on terrain={config.terrain.name}, seed {config.seed}"
+    head = f"# From the run {run}, {ground}, at {seconds}; see docs/getting_up.md\n"
     text = yaml.safe_dump(data, sort_keys=False, default_flow_style=None, width=100)
     return own_folder.write(path, head + text)
 

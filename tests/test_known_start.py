@@ -76,7 +76,7 @@ def test_a_run_begins_where_another_one_was(recorded, here):
     """To rounding: every angle and every speed, over the same hills."""
     path = make("there", recorded, 0.5)
     assert path.read_text().startswith(
-        f'# From the run "{recorded.attributes["run_id"]}", at 0.50 s'
+        f'# From the run "{recorded.attributes["run_id"]}", on terrain=uneven, seed 3, at 0.50 s'
     )
     same_hills = ("terrain=uneven", "terrain.run_in=0", "seed=3")
     _, data = started("behaviour=get_up", "start=there", *same_hills, folder=here)
@@ -197,7 +197,10 @@ def test_a_time_that_the_run_has_not(recorded, here, capsys, at):
             ("start", "mine", "--from", "rest", "--at", "1"),
             "--at=1: is a time of a run, and --from=rest is none",
         ),
-        (("start", "mine", "--from", "nothing"), "--from=nothing: no such start; valid: aloft, "),
+        (
+            ("start", "mine", "--from", "nothing"),
+            "--from=nothing: no such start or run; valid: aloft, ",
+        ),
         (("start", "rest", "--from", "."), ".: is a folder without run.h5; name a run, "),
     ],
 )
@@ -220,11 +223,23 @@ def test_a_run_that_broke_down_says_so(recorded, here, tmp_path):
     make("before", broken, 0.5)
 
 
+def test_a_state_under_water_is_no_start(here, tmp_path):
+    folder = tmp_path / "dive"
+    assert main(["run", "behaviour=dive_forward", "duration=4.3", "--out", str(folder)]) in (0, 1)
+    dived = RunLog.open(next(folder.glob("*/run.h5")))
+    with pytest.raises(
+        InputError, match=r"^--at=4\.\d\d: the run is \d\.\d\d m below the ground then, "
+    ):
+        make("wet", dived, None)
+    assert not (here / "conf").exists()
+    make("dry", dived, 0.5)
+
+
 def test_a_strangers_name_of_a_run_stays_in_its_comment(recorded, here, tmp_path):
     strange = with_arrays(recorded, tmp_path, run_id="x\npitch: [1.0, 1.0]")
     path = make("there", strange, None)
     assert yaml.safe_load(path.read_text())["pitch"] == [0.0, 0.0]
-    assert path.read_text().startswith('# From the run "x\\npitch: [1.0, 1.0]", at ')
+    assert path.read_text().startswith('# From the run "x\\npitch: [1.0, 1.0]", on ')
 
 
 def test_a_log_whose_states_are_of_another_body_is_refused(recorded, here, tmp_path):

@@ -132,7 +132,7 @@ def test_a_wrong_file_breaks_no_list(here, cli, text):
             )
             for word in ("true", "null", "No", "off", "inf")
         ),
-        (("start", "a", "nope"), "--from=nope: no such start; valid: aloft, "),
+        (("start", "a", "nope"), "--from=nope: no such start or run; valid: aloft, "),
         (("start", "still", "rest"), "still: there is a start of that name: "),
     ],
 )
