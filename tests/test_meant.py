@@ -44,7 +44,10 @@ def test_what_is_like_none_of_them_has_no_hint(word):
             ["new", "behaviors", "a", "--from", "b"],
             "no such kind of file; did you mean behaviour? ",
         ),
-        (["new", "start", "a", "--from", "rset"], "no such start or run; did you mean rest? valid: "),
+        (
+            ["new", "start", "a", "--from", "rset"],
+            "no such start or run; did you mean rest? valid: ",
+        ),
         (["run", "forward_roll_2"], "has no '='; write behaviour=forward_roll_2\n"),
         (["run", "landing"], "has no '='; write controller=landing or criteria=landing\n"),
         (["run", "start"], "has no '='; write start=CHOICE; valid: aloft, armstand, falling, "),
