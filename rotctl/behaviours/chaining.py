@@ -177,14 +177,19 @@ class Chain:
         With no foot on the ground, say on its back, it is where the part that ends was heading;
         who rolls backward heads where the back points.
         """
-        fronts = [forward(state, foot) for foot in sorted(self._feet)]
         if self._feet.isdisjoint(state.contacts.body.tolist()):
-            behaviour: Behaviour[Any] = self._part(memory)
-            signals = behaviour.signals(memory.inner, _since(memory, state))
-            x, y, _ = signals.axes[0].tolist()
-            backward = dot(signals.axis, state.trunk_axes[:, 1]) < -0.5  # about the trunk's right
-            fronts = [(-x, -y) if backward else (x, y)]
+            fronts = [self._front(memory, state)]
+        else:
+            fronts = [forward(state, foot) for foot in sorted(self._feet)]
         return degrees(atan2(fsum(y for _, y in fronts), fsum(x for x, _ in fronts)))
+
+    def _front(self, memory: ChainMemory, state: State) -> tuple[float, float]:
+        """Where the front of the part that ends points, level and unit."""
+        behaviour: Behaviour[Any] = self._part(memory)
+        signals = behaviour.signals(memory.inner, _since(memory, state))
+        x, y, _ = signals.axes[0].tolist()
+        backward = dot(signals.axis, state.trunk_axes[:, 1]) < -0.5  # about the trunk's right
+        return (-x, -y) if backward else (x, y)
 
     def _height(self, state: State) -> float:
         x, y, z = state.momentum.com.tolist()

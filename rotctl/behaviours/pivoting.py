@@ -13,7 +13,7 @@ from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import arrival
 from rotctl.control.task import Tasks
 from rotctl.linear import product
-from rotctl.mechanics.bodies import body_id
+from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.settings import STRICT, Positive, Vector
 
@@ -43,7 +43,7 @@ class Bring:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration: along the ground alone, and none upward."""
-        data, body = scene.state.data, body_id(scene.model.mj, self.body, KEY)
+        data, (body,) = scene.state.data, body_ids(scene.model.mj, [self.body], KEY)
         place = data.xpos[body] + product(data.xmat[body].reshape(3, 3), np.array(self.point))
         (x, y, _), momentum = place.tolist(), scene.state.momentum
         cx, cy, _ = momentum.com.tolist()

@@ -168,7 +168,8 @@ class Place:
         """Set the target."""
         body, state, data = int(task["body"]), scene.state, scene.state.data
         along, across = ways(scene)
-        from_here = data.xpos[body_id(scene.model.mj, self.beyond, KEY)]
+        (beyond,) = body_ids(scene.model.mj, [self.beyond], KEY)
+        from_here = data.xpos[beyond]
         aside = rests(scene, across) + self.ahead
         goal = (dot(from_here, along) + self.distance) * along + aside * across
         x, y = float(goal[0]), float(goal[1])
