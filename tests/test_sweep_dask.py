@@ -18,6 +18,7 @@ from rotctl.cli import main
 from rotctl.errors import InputError, RotctlError
 from rotctl.log import RunLog
 from rotctl.sweep import cluster as cluster_module
+from rotctl.sweep.apart import Death, apart
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.workers import make_engine
 
@@ -122,14 +123,29 @@ def test_a_worker_that_died_is_replaced_and_its_task_retried(engine, tmp_path):
 
 def test_a_task_that_always_kills_is_a_failure(engine):
     results = list(engine.map(sweep_tasks.trouble, ["kill"], retries=0))
-    assert results == [(0, Failure("the workers that tried it died"))]
+    assert results == [(0, Failure("its worker died: killed by SIGKILL, the last of 2 times"))]
+
+
+def test_what_waits_behind_those_that_kill_is_not_blamed(engine):
+    """Each of the two workers has one task at work and one that waits, and dies with both."""
+    items = ["kill", "a"] * 4
+    results = dict(engine.map(sweep_tasks.trouble, items, retries=1))
+    killed = Failure("its worker died: killed by SIGKILL, the last of 2 times")
+    assert results == {i: killed if item == "kill" else (item, "1") for i, item in enumerate(items)}
+
+
+def test_a_process_of_its_own_leaves_its_worker_alive():
+    assert apart(sweep_tasks.trouble, "exit") == Death("exit code 7")
+    assert apart(sweep_tasks.trouble, "kill") == Death("killed by SIGKILL")
+    assert apart(sweep_tasks.trouble, "raise") == Failure("ValueError: two lines")
+    assert apart(sweep_tasks.square, 3) == 9
 
 
 def test_short_items_go_together_and_one_that_kills_takes_no_other_with_it(engine):
     """After the first ones, ten milliseconds are known to be short."""
     items = [*["a"] * 300, "kill", *["b"] * 100]
     results = dict(engine.map(sweep_tasks.trouble, items, retries=6))
-    assert results.pop(300) == Failure("the workers that tried it died")
+    assert results.pop(300).reason == "its worker died: killed by SIGKILL, the last of 7 times"
     assert {index: items[index] for index in results} == {i: r[0] for i, r in results.items()}
     assert len(results) == 400
 

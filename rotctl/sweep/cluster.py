@@ -9,12 +9,13 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import CancelledError
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from urllib.parse import urlsplit
 from uuid import uuid4
 
 from rotctl.errors import InputError, RotctlError
-from rotctl.sweep.engines import TOGETHER, Failure, carried_out
+from rotctl.sweep.apart import Death, apart
+from rotctl.sweep.engines import TOGETHER, Failure, carried_out, died
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -92,7 +93,18 @@ def _require_answer(address: str) -> None:
             time.sleep(MOMENT)
 
 
-Batch = tuple[tuple[int, ...], int]  # indices of items; deaths of workers that had them
+class Batch(NamedTuple):
+    """A task of the scheduler's.
+
+    Attributes:
+        indices: of its items.
+        deaths: that its one item has seen: of the workers that it shared, of processes of its own.
+        sheltered: whether it is in a process of its own.
+    """
+
+    indices: tuple[int, ...]
+    deaths: int = 0
+    sheltered: bool = False
 
 
 @dataclass(frozen=True)
@@ -129,8 +141,9 @@ class Pace:
 class DaskEngine:
     """Tasks on a scheduler's workers; Dask replaces dead ones and gives their tasks to others.
 
-    Dask gives up on a task when 4 workers died that held it (its `allowed-failures`), perhaps
-    at the hands of another: that counts as one death here.
+    Dask gives up on a task when 4 workers died that held it (its `allowed-failures`), and with it
+    on those that waited there: at whose hands they died nobody knows. So when all others are
+    done, each of them goes into a process of its own on a worker, whose death is its own.
     """
 
     def __init__(self, client: "Client", address: str) -> None:
@@ -161,42 +174,49 @@ class DaskEngine:
 
         series = uuid4().hex  # the scheduler may have other clients
         left = deque(range(len(items)))
+        suspects: deque[Batch] = deque()
         going: dict[str, Batch] = {}
         pending = as_completed(loop=self._client.loop)
         pace = Pace()
 
         def submit(batch: Batch) -> None:
-            indices, deaths = batch
-            key = f"rotctl-{series}-{indices[0]}-{len(indices)}-{deaths}"
+            key = f"rotctl-{series}-{batch.indices[0]}-{len(batch.indices)}-{batch.deaths}"
             going[key] = batch
-            some = [items[index] for index in indices]
-            pending.add(self._client.submit(_one_by_one, task, some, key=key, pure=False))
+            some = [items[index] for index in batch.indices]
+            work = _in_a_process if batch.sheltered else _one_by_one
+            pending.add(self._client.submit(work, task, some, key=key, pure=False))
 
         def fill() -> None:
-            while left and sum(len(indices) for indices, _ in going.values()) < pace.in_flight:
+            while left and sum(len(batch.indices) for batch in going.values()) < pace.in_flight:
                 size = pace.size(len(left))
-                submit((tuple(left.popleft() for _ in range(size)), 0))
+                submit(Batch(tuple(left.popleft() for _ in range(size))))
+            if all(batch.sheltered for batch in going.values()):  # none that kills its worker
+                while suspects and len(going) < IN_FLIGHT:
+                    submit(suspects.popleft())
 
         fill()
         for future in pending:
-            indices, deaths = going.pop(future.key)
+            batch = going.pop(future.key)
             result = self._result(future)
-            if result is None and len(indices) > 1:  # of one of them, nobody knows which
-                for index in indices:
-                    submit(((index,), deaths))
-                continue
-            if result is None and deaths < retries:
-                submit((indices, deaths + 1))
-                continue
-            if result is None:
-                result = Failure("the workers that tried it died")
+            results: list[R | Failure] = []
             if isinstance(result, Failure):
-                results = [result] * len(indices)
+                results = [result] * len(batch.indices)
+            elif result is None and not batch.sheltered:
+                suspects.extend(Batch((index,), 1, sheltered=True) for index in batch.indices)
+            elif result is None or isinstance(result, Death):
+                deaths = batch.deaths + 1
+                if deaths <= retries:
+                    suspects.append(batch._replace(deaths=deaths))
+                elif result is None:
+                    results = [Failure("the workers that tried it died")]
+                else:
+                    results = [died(result.ending, deaths)]
             else:
                 results, seconds = result
-                pace = pace.after(len(indices), seconds)
+                pace = pace.after(len(results), seconds)
             fill()
-            yield from zip(indices, results, strict=True)
+            if results:
+                yield from zip(batch.indices, results, strict=True)
 
     def _result(self, future: Any) -> Any:
         """What became of a task; None if it was the death of its workers."""
@@ -219,14 +239,22 @@ class DaskEngine:
 
 
 _LOCK = threading.Lock()
+"""MuJoCo's warnings and Hydra are one for a process: no two tasks in threads of it."""
 
 
 def _one_by_one(task: Callable[[T], R], items: Sequence[T]) -> tuple[list[R | Failure], float]:
-    """The results, and how long they took [s].
-
-    MuJoCo's warnings and Hydra are one for a process: no two tasks in threads of it.
-    """
+    """The results, and how long they took [s]."""
     with _LOCK:
         begin = time.perf_counter()
         results = [carried_out(task, item) for item in items]
         return results, time.perf_counter() - begin
+
+
+def _in_a_process(task: Callable[[T], R], items: Sequence[T]) -> Any:
+    """As `_one_by_one`, of one item in a process of its own; its `Death`, if it dies of it."""
+    with _LOCK:
+        begin = time.perf_counter()
+        result = apart(task, items[0])
+        if isinstance(result, Death):
+            return result
+        return [result], time.perf_counter() - begin

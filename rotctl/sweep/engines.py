@@ -1,5 +1,6 @@
 """What runs tasks, in processes here or on the workers of a Dask scheduler: the contract."""
 
+import signal
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
@@ -70,3 +71,20 @@ def carried_out(task: Callable[[T], R], item: T) -> R | Failure:
         return Failure(str(error))
     except Exception as error:
         return Failure(" ".join(f"{type(error).__name__}: {error}".split()))
+
+
+def ending(code: int | None) -> str:
+    """How a process ended, by its exit code, for people."""
+    if code is not None and code < 0:
+        return f"killed by {signal.Signals(-code).name}"
+    return f"exit code {code}"
+
+
+def died(how: str, tries: int) -> Failure:
+    """What to say of a task that was tried so often and had a process each time.
+
+    Args:
+        how: the last of them ended.
+    """
+    counted = "" if tries == 1 else f", the last of {tries} times"
+    return Failure(f"its worker died: {how}{counted}")

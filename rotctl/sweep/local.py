@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 
 from rotctl.errors import InputError
 from rotctl.headless import mujoco_without_opengl
-from rotctl.sweep.engines import TOGETHER, Failure, carried_out
+from rotctl.sweep.engines import TOGETHER, Failure, carried_out, died, ending
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -54,7 +54,7 @@ class Worker:
         context = get_context("fork" if forked else "spawn")
         ours, theirs = context.Pipe()
         inherited = _open_files() - {theirs.fileno()} if forked else set()
-        process = context.Process(target=_serve, args=(theirs, inherited), daemon=True)  # type: ignore[attr-defined]
+        process = context.Process(target=serve, args=(theirs, inherited), daemon=True)  # type: ignore[attr-defined]
         process.start()
         theirs.close()  # else the pipe would not end with the worker
         return cls(process, ours)
@@ -79,9 +79,7 @@ class Worker:
         self.process.join(PATIENCE)
         code = self.process.exitcode
         self.stop()
-        if code is not None and code < 0:
-            return f"killed by {signal.Signals(-code).name}"
-        return f"exit code {code}"
+        return ending(code)
 
 
 class LocalEngine:
@@ -128,11 +126,11 @@ class LocalEngine:
                         result = pickle.loads(pipe.recv_bytes())
                     except (EOFError, OSError):  # it died, perhaps in the middle of an answer
                         del busy[pipe]
-                        ending = worker.ending()
+                        how = worker.ending()
                         if deaths < retries:
                             waiting.append((index, deaths + 1))
                             continue
-                        result = Failure(f"its worker died: {ending}{_tries(deaths + 1)}")
+                        result = died(how, deaths + 1)
                     else:
                         if waiting:  # it works on while the caller looks at this result
                             following, before = waiting.popleft()
@@ -178,7 +176,7 @@ def _open_files() -> set[int]:
     return still
 
 
-def _serve(pipe: Connection, inherited: set[int]) -> None:
+def serve(pipe: Connection, inherited: set[int]) -> None:
     """The life of a worker: until the driver closes the pipe, or is gone.
 
     Args:
@@ -217,7 +215,3 @@ def _let_go(inherited: set[int]) -> None:
 def _call(message: bytes) -> Any:
     task, item = pickle.loads(message)
     return task(item)
-
-
-def _tries(count: int) -> str:
-    return "" if count == 1 else f", the last of {count} times"
