@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rotctl import chained, choosing, documents, own_body
+from rotctl import chained, choosing, documents, labels, own_body
 from rotctl.choosing import Assignment, simple
 from rotctl.errors import InputError, LogError
 from rotctl.listing import choices, conf_dir, folders, is_own, named_file, own_dir, require_plain
@@ -34,6 +34,7 @@ def load(overrides: list[str]) -> Config:
         InputError: one line that names the bad value and the valid choices or range.
     """
     data = composed(overrides)
+    labels.require_own_in_files(_choices(overrides), data)
     try:
         return check(data)
     except InputError as error:
@@ -45,7 +46,7 @@ def _own_file(overrides: list[str], complaint: str) -> str:
 
     It is at fault if the choices among the overrides are wrong already, by themselves.
     """
-    chosen = [one for one in map(simple, overrides) if one and choices(one.key)]
+    chosen = _choices(overrides)
     mine = {one.key: named_file(one.key, one.value) for one in chosen}
     mine = {group: path for group, path in mine.items() if is_own(path)}
     if not mine:
@@ -57,6 +58,10 @@ def _own_file(overrides: list[str], complaint: str) -> str:
             named = [path for group, path in mine.items() if f"{group}." in complaint]
             return f"{next(iter(named or mine.values()))}: "
     return ""
+
+
+def _choices(overrides: list[str]) -> list[Assignment]:
+    return [one for one in map(simple, overrides) if one and choices(one.key)]
 
 
 def recorded(log: RunLog) -> Config:
@@ -89,6 +94,7 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     body = own_body.named(overrides)
     if body is None:
         return chained.composed(_composed(overrides), _composed, overrides)
+    labels.require_own((f"{own_body.GROUP}.{key}", value) for key, value in body.changes)
     data = {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
     return chained.composed(data, _composed, body.others)
 
@@ -96,12 +102,14 @@ def composed(overrides: list[str]) -> dict[str, Any]:
 def _composed(overrides: list[str]) -> dict[str, Any]:
     quick = [one for one in map(simple, overrides) if one]
     if len(quick) == len(overrides):
+        labels.require_own(quick)
         data = _set_on_choices(quick)
         if data is not None:
             return data
     from rotctl.overrides import assigned, is_choice, single
 
     found = [single(override) for override in overrides]
+    labels.require_own((str(o.key_or_group), o.value()) for o in found if not o.is_delete())
     require_plain([(str(o.key_or_group), str(o.value())) for o in found if is_choice(o)])
     quick = [one for one in map(assigned, found) if one]
     if len(quick) == len(overrides):

@@ -11,7 +11,7 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from rotctl import plain
+from rotctl import labels, plain
 from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.config import load
 from rotctl.errors import InputError
@@ -82,6 +82,7 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     texts = [one.text for one in assignments]
     if any(one.ordered or one.key.startswith(PARTS) for one in assignments):
         return load(texts)
+    labels.require_own((one.key, one.value) for one in assignments)
     choosing = tuple(one.text for one in assignments if one.way is None)
     if choosing not in bases:
         bases[choosing] = load(list(choosing))
