@@ -62,8 +62,9 @@ def make(name: str, log: RunLog, at: float | None) -> Path:
             "as in water; choose an earlier time"
         )
     run = brief(log.attributes["run_id"])  # a stranger's text, which must not end the comment
+    who = f"character={config.character.name}"
     ground = f"on terrain={config.terrain.name}, seed {config.seed}"
-    head = f"# From the run {run}, {ground}, at {seconds}; see docs/getting_up.md\n"
+    head = f"# From the run {run}, {who}, {ground}, at {seconds}; see docs/getting_up.md\n"
     text = yaml.safe_dump(data, sort_keys=False, default_flow_style=None, width=100)
     return own_folder.write(path, head + text)
 
@@ -116,4 +117,5 @@ def _state(log: RunLog, model: Model, row: int) -> dict[str, Any]:
         "angular_velocity": qvel[3:6].tolist(),
         "pose": dict(zip(model.joint_names, angles, strict=True)),
         "speeds": dict(zip(model.joint_names, speeds, strict=True)),
+        "mass": model.mass,
     }

@@ -76,7 +76,8 @@ def test_a_run_begins_where_another_one_was(recorded, here):
     """To rounding: every angle and every speed, over the same hills."""
     path = make("there", recorded, 0.5)
     assert path.read_text().startswith(
-        f'# From the run "{recorded.attributes["run_id"]}", on terrain=uneven, seed 3, at 0.50 s'
+        f'# From the run "{recorded.attributes["run_id"]}", character=adult, on terrain=uneven, '
+        "seed 3, at 0.50 s"
     )
     same_hills = ("terrain=uneven", "terrain.run_in=0", "seed=3")
     _, data = started("behaviour=get_up", "start=there", *same_hills, folder=here)
@@ -155,6 +156,19 @@ def test_a_start_is_turned_and_pushed_from_there():
     own = data.xmat[1].reshape(3, 3).T @ spin
     assert data.qvel[3:6] == pytest.approx(np.array(STATE.angular_velocity) + own)
     assert plain.qvel[:3].tolist() == list(STATE.velocity)
+
+
+def test_a_state_is_of_a_body_as_heavy():
+    """An adult's is no baby's, whose joints have the same names; unless somebody wants it so."""
+    with pytest.raises(InputError) as error:
+        beside(replace(STATE, mass=9.0))
+    assert str(error.value) == (
+        "start=prone is a state of a character of 9 kg, and this one has 70 kg; give the character "
+        "of the run that it is from, or start.state.mass=null to start so all the same"
+    )
+    _, given = beside(replace(STATE, mass=70.0))
+    _, plain = beside()
+    assert given.qpos.tolist() == plain.qpos.tolist()
 
 
 def test_scatter_is_another_state_each_seed():
@@ -239,7 +253,9 @@ def test_a_strangers_name_of_a_run_stays_in_its_comment(recorded, here, tmp_path
     strange = with_arrays(recorded, tmp_path, run_id="x\npitch: [1.0, 1.0]")
     path = make("there", strange, None)
     assert yaml.safe_load(path.read_text())["pitch"] == [0.0, 0.0]
-    assert path.read_text().startswith('# From the run "x\\npitch: [1.0, 1.0]", on ')
+    assert path.read_text().startswith(
+        '# From the run "x\\npitch: [1.0, 1.0]", character=adult, on '
+    )
 
 
 def test_a_log_whose_states_are_of_another_body_is_refused(recorded, here, tmp_path):

@@ -135,7 +135,8 @@ def test_what_cannot_fall():
         build(load(["behaviour=turn_over", "start=falling"]))
     assert str(caught.value) == (
         "start=falling falls onto the feet of who turns about the left axis, and "
-        "behaviour.roll_about=head"
+        "behaviour.roll_about=head; valid: long, prone, rest, side, still, supine, symmetric, "
+        "tucked, tucked_back"
     )
 
 

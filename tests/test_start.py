@@ -183,7 +183,8 @@ def test_a_posture_that_does_not_fit(world):
     with pytest.raises(InputError) as error:
         draw(WAITING, world.model, "head", generator)
     assert str(error.value) == (
-        "start=test has no posture for behaviour.roll_about=head; it has: left"
+        "start=test has no posture for behaviour.roll_about=head, only for left; "
+        "valid: long, prone, rest, side, still, supine, symmetric, tucked, tucked_back"
     )
     tailed = replace(WAITING, postures={"left": Posture(pitch=0.0, pose={"tail": 1.0})})
     with pytest.raises(InputError) as error:

@@ -1,6 +1,6 @@
 """Starts in a state that is known to the last number, such as where an earlier run was."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, pi, remainder, tau
 from typing import Any
 
@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.rotations import Array, dotted, length
-from rotctl.settings import STRICT, Finite, Vector
+from rotctl.settings import SPARSE, STRICT, Finite, Positive, Vector
 
 LEAST = 1e-3  # [-] of a quaternion's length, below which nobody knows what it is
 
@@ -27,6 +27,7 @@ class StateSettings:
         angular_velocity: of the pelvis, in its own frame [rad/s].
         pose: joint angles by name [rad]; those not named are 0.
         speeds: of the joints by name [rad/s]; those not named are 0.
+        mass: of the character whose state it is [kg]; None says that it is any one's.
     """
 
     place: tuple[Finite, Finite]
@@ -36,6 +37,7 @@ class StateSettings:
     angular_velocity: Vector
     pose: dict[str, Finite]
     speeds: dict[str, Finite]
+    mass: Positive | None = field(default=None, metadata=SPARSE)
 
     def __post_init__(self) -> None:
         if dotted(self.orientation, self.orientation) < LEAST**2:
