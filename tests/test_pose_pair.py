@@ -7,7 +7,7 @@ import pytest
 
 from rotctl.config import load
 from rotctl.errors import InputError
-from rotctl.motion import Poses, make_pose_pair
+from rotctl.motion import Poses, make_pose, make_pose_pair
 
 
 def value(model, poses, name):
@@ -86,3 +86,16 @@ def test_waves_of_multiples_of_the_phase(world):
 def test_a_mean_and_pairs_and_nothing_else(angle):
     with pytest.raises(InputError):
         load([f"behaviour.poses.a.knee={angle}"])
+
+
+def test_a_single_pose_keeps_to_the_ranges_of_joints(world):
+    low, high = world.model.joint_range[world.model.joint_names.index("knee_l")].tolist()
+    pose = make_pose(world.model, {"knee": high, "waist_y": 0.1}, "start")
+    assert pose[world.model.joint_names.index("knee_r")] == high
+    for angle in (low - 0.1, high + 0.1):
+        with pytest.raises(InputError) as error:
+            make_pose(world.model, {"knee": angle}, "behaviour.stages.4.glide.end")
+        assert str(error.value) == (
+            f"behaviour.stages.4.glide.end.knee={angle:g}: "
+            f"this joint goes from {low:.4g} to {high:.4g} rad"
+        )

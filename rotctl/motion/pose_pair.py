@@ -2,8 +2,8 @@
 
 Each joint of a pose is a number [rad], or (mean, cosine, sine) [rad] over the phase theta:
 mean + cosine cos(theta) + sine sin(theta); cosine and sine of twice the phase may follow, and so
-on. A joint name without a side stands for both sides; joints not named are held at 0. A pose is
-clipped to the joints' ranges.
+on. A joint name without a side stands for both sides; joints not named are held at 0. A pose over
+the phase is clipped to the joints' ranges, which it may well pass; a single one must keep to them.
 """
 
 from collections.abc import Mapping
@@ -15,12 +15,14 @@ import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.errors import InputError
 from rotctl.mechanics.model import Model
 from rotctl.native.layout import constant
 from rotctl.rotations import Array
 from rotctl.same import kept
 from rotctl.settings import STRICT, Finite
 
+ROUNDING = 1e-6  # [rad] of a limit that somebody copied
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
 
 
@@ -105,9 +107,15 @@ def make_pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
     """One constant pose (nu,) [rad] by joint name, within the joints' ranges.
 
     Raises:
-        InputError: a name is no joint of the model.
+        InputError: a name is no joint of the model, or an angle is none of that joint.
     """
     (pose,) = model.posed(angles, key, 1)
+    for name, angle in angles.items():
+        for low, high in model.joint_range[model.motors(name, key)].tolist():
+            if not low - ROUNDING <= angle <= high + ROUNDING:
+                raise InputError(
+                    f"{key}.{name}={angle:g}: this joint goes from {low:.4g} to {high:.4g} rad"
+                )
     return np.asarray(
         np.minimum(np.maximum(pose, model.joint_range[:, 0]), model.joint_range[:, 1])
     )
