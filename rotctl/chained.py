@@ -5,11 +5,13 @@ part brings its behaviour, its criteria, and, where the run's are others by name
 its excursion is measured. What was said of it stays beside it: parts of one name may differ.
 """
 
+import re
 import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import Any
 
+from rotctl import plain
 from rotctl.checked import brief
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
@@ -21,6 +23,7 @@ GAINS = tuple(part.name for part in fields(Gains))
 GROUPS = ("behaviour", "controller", "criteria", "excursion")  # that make a part
 WORLD = ("character", "terrain")  # that a part has from the run
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
+_OF_A_PART = re.compile(r"behaviour\.parts\[(\d+)\]\.(?=behaviour\b)")
 Composing = Callable[[list[str]], dict[str, Any]]
 
 
@@ -65,6 +68,19 @@ def composed(
     if isinstance(criteria, dict) and criteria.get("kind") == KIND and not criteria.get("parts"):
         data["criteria"] = {**criteria, "parts": [one["criteria"] for one in made]}
     return data
+
+
+def told(complaint: str, data: dict[str, Any]) -> str:
+    """A complaint about a part by what was said of it, with the keys that may be said there.
+
+    Args:
+        data: of the whole config.
+    """
+    match = _OF_A_PART.match(complaint)
+    said = plain.find(data, ("behaviour", "parts", int(match[1]), SAID)) if match else None
+    if not match or not isinstance(said, str):
+        return complaint
+    return f"behaviour.parts: {said!r}: {complaint[match.end() :]}"
 
 
 def _require_few(said: int, between: int) -> None:

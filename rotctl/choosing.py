@@ -118,6 +118,11 @@ def _composed(chosen: Sequence[Assignment]) -> dict[str, Any]:
     return data
 
 
+def package(group: str) -> str:
+    """The key that the choices of a group are about: its own name, if they say no other."""
+    return _file(group, choices(group)[0]).package or group
+
+
 def _asks(group: str, name: str) -> list[tuple[str, str]]:
     """What a file asks of other groups, before what those ask that it builds on."""
     file = _file(group, name)

@@ -38,7 +38,8 @@ def load(overrides: list[str]) -> Config:
     try:
         return check(data)
     except InputError as error:
-        raise InputError(f"{_own_file(overrides, str(error))}{error}") from None
+        complaint = chained.told(str(error), data)
+        raise InputError(f"{_own_file(overrides, str(error))}{complaint}") from None
 
 
 def _own_file(overrides: list[str], complaint: str) -> str:

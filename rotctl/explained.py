@@ -10,6 +10,7 @@ from typing import Any
 from hydra.core.override_parser.types import Override
 
 from rotctl.checked import brief, clip, unknown_key
+from rotctl.choosing import package
 from rotctl.errors import InputError
 from rotctl.listing import choices
 from rotctl.overrides import is_choice
@@ -35,8 +36,15 @@ def explain(error: Exception, overrides: list[Override], valid: dict[str, Any]) 
 def _complaint(override: Override, valid: dict[str, Any]) -> str:
     """Why an override does not fit a config; empty if it does."""
     key = str(override.key_or_group)
-    if choices(key) and key not in valid:
-        return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
+    group, _, rest = key.partition(".")
+    if choices(group) and group not in valid:
+        if not rest:
+            return (
+                f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
+            )
+        return (
+            f"unknown key {clip(key)!r}; what +{group}=CHOICE adds is {package(group)}.{clip(rest)}"
+        )
     if override.package:
         return unknown_key(f"{key}@{override.package}", "", list(valid))
     place, parts = valid, way(key)

@@ -97,7 +97,7 @@ def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "
     """What a schedule tells comes before a run of that duration [s] is over."""
     if isinstance(behaviour, ChainSettings):
         for number, part in enumerate(behaviour.parts):
-            _require_in_time(part.behaviour, duration, f"{key}.parts[{number}].behaviour")
+            _require_in_time(part.behaviour, duration, f"{part.place(number)}: behaviour")
     if isinstance(behaviour, RollingSettings):
         for schedule, time in behaviour.last_told.items():
             if time >= duration:

@@ -136,8 +136,8 @@ def test_what_was_said_of_a_part_does_not_act():
          "criteria, finish"),
         (["stand character={kind:mjcf,file:/etc/passwd}"], "behaviour.parts[0]: "),
         (["stand 'x"], "behaviour.parts[0]=\"stand 'x\": No closing quotation"),
-        (["forward_roll", "stand"], "behaviour: parts[0]: forward_roll rolls on, and others follow "
-         "it; 'behaviour=NAME +finish=stand' comes to an end"),
+        (["forward_roll", "stand"], "behaviour: parts: 'forward_roll': forward_roll rolls on, and "
+         "others follow it; 'behaviour=NAME +finish=stand' comes to an end"),
         (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20 in all"),
         (["stand"] * 11, "behaviour.parts: has 11 parts and behaviour.between adds 10, valid: up "
          "to 20 in all"),
@@ -145,10 +145,10 @@ def test_what_was_said_of_a_part_does_not_act():
          "it must have one"),
         (["back_flip ~behaviour"], 'behaviour.parts[0]="back_flip ~behaviour": leaves no '
          "behaviour, it must have one"),
-        (["back_flip behaviour.stages=7", "stand"], "behaviour.parts[0].behaviour.stages=7: must "
-         "be a list, in brackets"),
-        (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts[0].behaviour.stages[0]=5: "
-         "must be keys with values"),
+        (["back_flip behaviour.stages=7", "stand"], "behaviour.parts: 'back_flip "
+         "behaviour.stages=7': behaviour.stages=7: must be a list, in brackets"),
+        (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts: \"back_flip "
+         "'behaviour.stages=[5]'\": behaviour.stages[0]=5: must be keys with values"),
         (["incline +finish=stand", "stand"], 'behaviour.parts[0]="incline +finish=stand": is for '
          "terrain=incline, and the run has terrain=flat; give the run terrain=incline"),
         (["stand", "baby_roll_over"], 'behaviour.parts[1]="baby_roll_over": is for character=baby, '
@@ -156,8 +156,8 @@ def test_what_was_said_of_a_part_does_not_act():
         (["back_flip", "forward_roll_1"], 'behaviour.parts[1]="forward_roll_1": is for '
          "character=adult_free_head, and the run has character=adult; give the run "
          "character=adult_free_head"),
-        (["stand", "stand ~behaviour.heading"], "behaviour.parts[2].behaviour.heading: missing, it "
-         "cannot be left out"),
+        (["stand", "stand ~behaviour.heading"], "behaviour.parts: \"stand '~behaviour.heading'\": "
+         "behaviour.heading: missing, it cannot be left out"),
         (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts[1]: "
          "behaviour.heading=90.0: acts on nothing, a later part heads where the feet point as it "
          "begins"),
@@ -266,8 +266,27 @@ def test_as_many_parts_as_there_may_be():
 
 def test_a_log_roll_begins_lying():
     config = chain("stand", "behaviour=log_roll")
-    with pytest.raises(InputError, match=r"parts\[2\]: log_roll rolls about the head, lying"):
+    with pytest.raises(InputError) as caught:
         build(config)
+    assert str(caught.value) == (
+        "behaviour.parts: 'log_roll': log_roll rolls about the head, lying, and cannot begin from "
+        "standing"
+    )
+
+
+def test_a_part_that_does_not_fit_is_told_by_what_was_said_of_it():
+    """And not by its number, between which and the user's there are others."""
+    said = "stand 'behaviour.tasks.balance.aim.bodies=[tail]'"
+    config = chain("stand", said)
+    told = "behaviour.tasks.balance.aim.bodies names the unknown body 'tail'; "
+    with pytest.raises(InputError) as caught:
+        build(config)
+    assert str(caught.value).startswith(f"behaviour.parts: {said!r}: {told}")
+    unsaid = [replace(part, said="") for part in config.behaviour.parts]
+    config = replace(config, behaviour=replace(config.behaviour, parts=tuple(unsaid)))
+    with pytest.raises(InputError) as caught:
+        build(config)
+    assert str(caught.value).startswith(f"behaviour.parts[2]: {told}")
 
 
 def test_criteria_are_as_many_as_parts():
@@ -435,6 +454,6 @@ def test_a_schedule_of_a_part_comes_in_the_run():
     with pytest.raises(InputError) as raised:
         build(chain)
     assert str(raised.value) == (
-        "behaviour.parts[2].behaviour.pace.schedule: what it tells from 9 s on never comes, the "
-        "run is over at 9 s"
+        "behaviour.parts: \"forward_roll 'behaviour.pace.schedule=[[9,0.5]]'\": "
+        "behaviour.pace.schedule: what it tells from 9 s on never comes, the run is over at 9 s"
     )

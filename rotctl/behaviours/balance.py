@@ -92,7 +92,7 @@ class Capture:
     def _support(self, scene: Scene) -> tuple[list[int], list[Point], Point]:
         """The bodies that do not swing, hull of those on the ground, and its middle."""
         model, state = scene.model, scene.state
-        bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+        bodies = body_ids(model.mj, self.bodies)
         bodies = [body for body in bodies if body != scene.step.swing]
         stand = [body for body in bodies if not support.lifted(model, state, body)]
         ends = support.ends(model, state.data, stand or bodies)

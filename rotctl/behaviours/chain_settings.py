@@ -40,6 +40,16 @@ class PartSettings:
             return len(self.behaviour.stages)
         return 1 if self.behaviour.finish is None else 1 + len(self.behaviour.finish.stages)
 
+    def place(self, number: int) -> str:
+        """Where it stands in a chain, for a message to begin with.
+
+        By what was said of it where that is known: others may have been put between.
+
+        Args:
+            number: of the part.
+        """
+        return f"behaviour.parts: {self.said!r}" if self.said else f"behaviour.parts[{number}]"
+
     @property
     def ends(self) -> bool:
         """Whether it comes to an end by itself."""
@@ -80,8 +90,9 @@ class ChainSettings:
     def __post_init__(self) -> None:
         for number, part in enumerate(self.parts[:-1]):
             if not part.ends:
+                place = part.place(number).removeprefix("behaviour.")
                 raise ValueError(
-                    f"parts[{number}]: {part.behaviour.name} rolls on, and others follow it; "
+                    f"{place}: {part.behaviour.name} rolls on, and others follow it; "
                     "'behaviour=NAME +finish=stand' comes to an end"
                 )
         if self.again is not None and not self.parts[-1].ends:

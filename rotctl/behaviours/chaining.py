@@ -93,13 +93,17 @@ class Chain:
         for number, part in enumerate(settings.parts):
             if number and part.behaviour.roll_about == "head":
                 raise InputError(
-                    f"behaviour.parts[{number}]: {part.behaviour.name} rolls about the head, "
+                    f"{part.place(number)}: {part.behaviour.name} rolls about the head, "
                     "lying, and cannot begin from standing"
                 )
 
         @lru_cache(maxsize=len(settings.parts))
         def made(number: int, heading: float) -> Part:
-            return settings.parts[number].make(heading, model, control, measured)
+            part = settings.parts[number]
+            try:
+                return part.make(heading, model, control, measured)
+            except InputError as error:
+                raise InputError(f"{part.place(number)}: {error}") from None
 
         self._made = made
         first = [made(i, part.behaviour.heading) for i, part in enumerate(settings.parts)]

@@ -135,7 +135,7 @@ class Flight:
         """Whether what is to land is lowest after the turn that is the target."""
         data, mj = self._landed(self._usual.attitude, self._usual.pose), self._model.mj
         own = np.flatnonzero(is_character(mj)).tolist()
-        landing = body_ids(mj, self.bodies, "behaviour.stages.flight.bodies")
+        landing = body_ids(mj, self.bodies)
         return self._lowest(data, landing) <= self._lowest(data, own) + ROUNDING
 
     def least_momentum(self, turns: float, gone: float, time: float) -> float:

@@ -209,7 +209,7 @@ def standing(scene: Scene, bodies: tuple[str, ...]) -> Base:
 
 
 def _ends(scene: Scene, bodies: tuple[str, ...]) -> list[support.Point]:
-    found = body_ids(scene.model.mj, bodies, "behaviour.stages.tasks.bodies")
+    found = body_ids(scene.model.mj, bodies)
     return support.ends(scene.model, scene.state.data, found)
 
 

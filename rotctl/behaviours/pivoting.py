@@ -17,8 +17,6 @@ from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.settings import STRICT, Positive, Vector
 
-KEY = "behaviour.stages.tasks.body"
-
 
 @validated(frozen=True, config=STRICT)
 class Bring:
@@ -43,7 +41,7 @@ class Bring:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration: along the ground alone, and none upward."""
-        data, (body,) = scene.state.data, body_ids(scene.model.mj, [self.body], KEY)
+        data, (body,) = scene.state.data, body_ids(scene.model.mj, [self.body])
         place = data.xpos[body] + product(data.xmat[body].reshape(3, 3), np.array(self.point))
         (x, y, _), momentum = place.tolist(), scene.state.momentum
         cx, cy, _ = momentum.com.tolist()

@@ -77,7 +77,7 @@ class Above:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         model, state, com = scene.model, scene.state, scene.state.momentum.com
-        bodies = body_ids(model.mj, self.bodies, "behaviour.stages.tasks.bodies")
+        bodies = body_ids(model.mj, self.bodies)
         x, y = support.middle(support.ends(model, state.data, bodies))
         missing = np.array([x, y, scene.floor + self.height]) + self.ahead * scene.axes[0] - com
         far = sqrt(dot(missing, missing))
@@ -109,7 +109,7 @@ class Opposite:
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         model, state = scene.model, scene.state
-        other = body_ids(model.mj, [self.body], "behaviour.stages.tasks.body")
+        other = body_ids(model.mj, [self.body])
         ox, oy = support.middle(support.ends(model, state.data, other))
         x, y = support.capture_point(state, support.pendulum_rate(model, state))
         far = sqrt((x - ox) ** 2 + (y - oy) ** 2)

@@ -32,7 +32,6 @@ from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, Triple, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
-KEY = "behaviour.stages.tasks.bodies"
 NARROW = 0.05  # [m] hands that are closer make no line
 
 
@@ -117,7 +116,7 @@ class Shift:
 
 def borne_at(scene: Scene, bodies: tuple[str, ...]) -> support.Point:
     """Middle of these bodies, each where it touches the ground, or would, seen from above [m]."""
-    found = body_ids(scene.model.mj, bodies, KEY)
+    found = body_ids(scene.model.mj, bodies)
     return support.middle([_end(scene, body)[:2] for body in found])
 
 
@@ -140,7 +139,7 @@ class _Hands(NamedTuple):
 
 def _hands(scene: Scene, bodies: tuple[str, ...]) -> _Hands:
     """Where two hands are so close that they are no line, it lies along the behaviour's left."""
-    found = body_ids(scene.model.mj, bodies, KEY)
+    found = body_ids(scene.model.mj, bodies)
     ends = [(body, np.array(_end(scene, body))) for body in found]
     (lx, ly, _), (rx, ry, _) = ends[0][1].tolist(), ends[-1][1].tolist()
     dx, dy = lx - rx, ly - ry

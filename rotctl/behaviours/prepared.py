@@ -22,6 +22,8 @@ from rotctl.mechanics.model import Model
 from rotctl.motion import make_pose_pair
 from rotctl.rotations import Array
 
+STAGES = "behaviour.stages"
+
 
 @dataclass(frozen=True)
 class Prepared:
@@ -70,18 +72,19 @@ def prepared(
     named = {name: wanted.gains or name for name, wanted in every.items()}
     gains = gains_of(control, tuple(named.values()))
     for name, wanted in every.items():
-        own = f"stages.{number}." if name in stage.tasks else ""
-        key = f"behaviour.{own}tasks.{name}"
+        where = f"{STAGES}.{number}" if name in stage.tasks else "behaviour"
+        key = f"{where}.tasks.{name}"
         bodies = body_ids(model.mj, [wanted.body], f"{key}.body") if wanted.body else [0]
         for body, slot in zip(bodies, task_names(model, name, wanted), strict=True):
             if wanted.aim:
                 wanted.aim.check(model, f"{key}.aim")
                 filled.append((len(rows), wanted.kind, wanted.aim))
-            number = kind(wanted.kind).number
-            rows.append(task(number, gains[named[name]], axes, body, wanted.point))
+            rows.append(
+                task(kind(wanted.kind).number, gains[named[name]], axes, body, wanted.point)
+            )
             slots.append(names.index(slot))
     held_out = model.excluded.copy()
-    held_out[body_ids(model.mj, stage.held_out, f"behaviour.stages.{stage.name}.held_out")] = 1
+    held_out[body_ids(model.mj, stage.held_out, f"{STAGES}.{number}.held_out")] = 1
     tasks = np.concatenate([np.zeros(0, TASK), *rows])
     aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
     return Prepared(
@@ -89,7 +92,7 @@ def prepared(
         fillers=[(tasks[row], kind_name, aim) for row, kind_name, aim in filled],
         slots=slots,
         held_out=held_out,
-        behind=_behind(stage, model),
+        behind=_behind(number, stage, model),
         pose=pose_gains_of(control, stage.pose),
         contact=contact_gains_of(control, stage.contact),
         aims=aims,
@@ -104,17 +107,20 @@ def task_names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
     return [name + side for side in SIDES] if both else [name]
 
 
-def pose_law(stage: Stage, shape: str, frame: Frame, target: float, model: Model) -> PoseLaw:
+def pose_law(
+    number: int, stage: Stage, shape: str, frame: Frame, target: float, model: Model
+) -> PoseLaw:
     """What says a stage's pose.
 
     Args:
+        number: of the stage.
         shape: in which it flies, if it does.
         target: to turn [rad].
 
     Raises:
         InputError: a joint or a body is not there.
     """
-    key = f"behaviour.stages.{stage.name}"
+    key = f"{STAGES}.{number}"
     if stage.flight:
         return Flight(stage.flight, model, frame, target, f"{key}.flight", shape)
     if stage.rise:
@@ -129,11 +135,11 @@ def pose_law(stage: Stage, shape: str, frame: Frame, target: float, model: Model
     return OverPhase(make_pose_pair(model, stage.poses, f"{key}.poses"), stage.lead, stage.beyond)
 
 
-def _behind(stage: Stage, model: Model) -> Array | None:
+def _behind(number: int, stage: Stage, model: Model) -> Array | None:
     """What of each body (nbody,) may only be used where it stands on its front."""
     if not stage.toes:
         return None
-    mj, key = model.mj, f"behaviour.stages.{stage.name}.toes"
+    mj, key = model.mj, f"{STAGES}.{number}.toes"
     behind = np.full(mj.nbody, -np.inf)
     for body in body_ids(mj, stage.toes, key):
         solid = (mj.geom_bodyid == body) & (mj.geom_contype > 0)

@@ -15,7 +15,7 @@ from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
 from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.posing import OverPhase
-from rotctl.behaviours.prepared import pose_law, prepared, task_names
+from rotctl.behaviours.prepared import STAGES, pose_law, prepared, task_names
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import mirrored
 from rotctl.control import Command, ControllerSettings
@@ -88,13 +88,14 @@ class Staged:
         stages = [take_off.at_speed(stage, settings.take_off) for stage in settings.stages]
         self._stages = tuple(mirrored(s, model) if right else s for s in stages)
         found: dict[str, None] = {}
-        for stage in self._stages:
+        for number, stage in enumerate(self._stages):
+            key = f"{STAGES}.{number}"
             for name, wanted in (settings.tasks | stage.tasks).items():
                 found.update(dict.fromkeys(task_names(model, name, wanted)))
             if stage.until:
-                stage.until.check(model)
+                stage.until.check(model, f"{key}.until")
             if stage.otherwise:
-                stage.otherwise.when.check(model)
+                stage.otherwise.when.check(model, f"{key}.otherwise.when")
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
         self._parts = [
@@ -102,8 +103,8 @@ class Staged:
             for number, stage in enumerate(self._stages)
         ]
         self._poses = [
-            pose_law(stage, settings.shape, self._frame, self._target, model)
-            for stage in self._stages
+            pose_law(number, stage, settings.shape, self._frame, self._target, model)
+            for number, stage in enumerate(self._stages)
         ]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
         for part in self._parts:

@@ -27,7 +27,6 @@ from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, about_up
 from rotctl.settings import STRICT, NonNegative, Positive
 
-KEY = "behaviour.stages.tasks.bodies"
 DOWN = 0.5  # of a swing, from which on a touch ends it
 LATE = 1.5  # swings, after which one ends that met no ground
 REACH_DOWN = 0.85  # of a swing, from which on the foot
@@ -202,7 +201,7 @@ class Heading:
 @lru_cache(maxsize=64)
 def _ids(mj: mujoco.MjModel, bodies: tuple[str, str]) -> tuple[int, int]:
     left, right = bodies
-    return body_id(mj, left, KEY), body_id(mj, right, KEY)
+    return body_id(mj, left), body_id(mj, right)
 
 
 def arrival(way: float, speed: float, time: float) -> float:

@@ -26,15 +26,15 @@ class Touches:
     bodies: tuple[str, ...]
     after: NonNegative = 0.0
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         if scene.state.time - scene.begin.time < self.after - 1e-9:
             return False
-        wanted = body_ids(scene.model.mj, self.bodies, "behaviour.stages.until.bodies")
+        wanted = body_ids(scene.model.mj, self.bodies)
         return any(body in wanted for body in scene.state.contacts.body.tolist())
 
 
@@ -45,7 +45,7 @@ class Airborne:
     kind: Literal["airborne"]
     seconds: NonNegative
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -60,9 +60,9 @@ class Lands:
     kind: Literal["lands"]
     bodies: tuple[str, ...]
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -77,19 +77,18 @@ class Enters:
     kind: Literal["enters"]
     bodies: tuple[str, ...]
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there, and where there is no water."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
         if not isinstance(model.ground, Basin):
             raise InputError(
-                "behaviour.stages.until: this behaviour dives, and here is no water; "
-                "choose terrain=pool"
+                f"{key}: this behaviour dives, and here is no water; choose terrain=pool"
             )
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         mj, data = scene.model.mj, scene.state.data
-        bodies = body_ids(mj, self.bodies, "behaviour.stages.until.bodies")
+        bodies = body_ids(mj, self.bodies)
         x, y, _ = scene.state.momentum.com.tolist()
         chosen = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
         return lowest_and_highest(mj, data, chosen)[0] < scene.model.ground.height(x, y)
@@ -111,7 +110,7 @@ class Launched:
     knee: Positive
     turning: str = ""
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -123,7 +122,7 @@ class Launched:
             if whirl.enough(scene):
                 return True
         state, model = scene.state, scene.model
-        knees = state.position[model.angles][model.motors("knee", "behaviour.stages.until.knee")]
+        knees = state.position[model.angles][model.motors("knee", "knee")]
         return (
             float(state.momentum.com_velocity[2]) >= self.up
             or float(state.momentum.com[2]) - scene.floor >= self.height

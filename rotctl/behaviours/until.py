@@ -25,7 +25,7 @@ class After:
     kind: Literal["after"]
     seconds: NonNegative
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -45,7 +45,7 @@ class Turned:
         if (self.share is None) == (self.angle is None):
             raise ValueError("give either share or angle, not both and not neither")
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -69,7 +69,7 @@ class Near:
     angle: NonNegative
     speed: Positive | None = field(default=None, metadata=SPARSE)
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -87,7 +87,7 @@ class Low:
     kind: Literal["low"]
     height: Positive
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -103,7 +103,7 @@ class Still:
     kind: Literal["still"]
     seconds: NonNegative
 
-    def check(self, model: Model) -> None:
+    def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
@@ -119,9 +119,9 @@ class Tilted:
     bodies: tuple[str, ...]
     angle: Finite
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -143,9 +143,9 @@ class Passed:
     bodies: tuple[str, ...]
     distance: Finite
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -166,9 +166,9 @@ class Leaves:
     after: NonNegative
     angle: Finite
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -192,9 +192,9 @@ class Over:
     within: Positive
     speed: Positive
 
-    def check(self, model: Model) -> None:
-        """Raises InputError for a body that is not there."""
-        body_ids(model.mj, self.bodies, "behaviour.stages.until.bodies")
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where this stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""

@@ -23,7 +23,6 @@ from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
-KEY = "behaviour.stages.tasks.bodies"
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -49,7 +48,7 @@ def share_of(scene: Scene, angles: tuple[float, float]) -> float:
 
 def beyond(scene: Scene, bodies: tuple[str, ...]) -> float:
     """How far the centre of mass is beyond the middle of these bodies, along the way [m]."""
-    found = body_ids(scene.model.mj, bodies, KEY)
+    found = body_ids(scene.model.mj, bodies)
     x, y = support.middle(support.ends(scene.model, scene.state.data, found))
     return dot(scene.state.momentum.com - np.array([x, y, 0.0]), ways(scene).along)
 
@@ -128,8 +127,8 @@ class Carry:
         """What stands, seen from above [m]."""
         model, contacts = scene.model, scene.state.contacts
         touching = contacts.body.tolist()
-        feet = body_ids(model.mj, self.bodies, KEY)
-        hands = body_ids(model.mj, self.hands, KEY)
+        feet = body_ids(model.mj, self.bodies)
+        hands = body_ids(model.mj, self.hands)
         stand = [body for body in feet if body in touching]
         spots = zip(touching, contacts.position.tolist(), strict=True)
         ends = [(x, y) for body, (x, y, _) in spots if body in hands]
@@ -168,7 +167,7 @@ class Place:
         """Set the target."""
         body, state, data = int(task["body"]), scene.state, scene.state.data
         along, across = ways(scene)
-        (beyond,) = body_ids(scene.model.mj, [self.beyond], KEY)
+        (beyond,) = body_ids(scene.model.mj, [self.beyond])
         from_here = data.xpos[beyond]
         aside = rests(scene, across) + self.ahead
         goal = (dot(from_here, along) + self.distance) * along + aside * across

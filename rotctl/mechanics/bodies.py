@@ -38,11 +38,12 @@ def lowest_and_highest(
     return float(low[chosen].min()), float(high[chosen].max())
 
 
-def body_ids(mj: mujoco.MjModel, names: Iterable[str], key: str) -> list[int]:
+def body_ids(mj: mujoco.MjModel, names: Iterable[str], key: str = "") -> list[int]:
     """MuJoCo's ids of bodies; a name without a side stands for both sides.
 
     Raises:
-        InputError: there is none of a name; `key` says where it stands.
+        InputError: there is none of a name; `key` says where it stands, and is needed where the
+            names have not been looked up before.
     """
     return list(_body_ids(mj, tuple(names), key))
 
@@ -56,11 +57,11 @@ def _body_ids(mj: mujoco.MjModel, names: tuple[str, ...], key: str) -> tuple[int
     return tuple(found)
 
 
-def body_id(mj: mujoco.MjModel, name: str, key: str) -> int:
+def body_id(mj: mujoco.MjModel, name: str, key: str = "") -> int:
     """MuJoCo's id of a body of the character.
 
     Raises:
-        InputError: there is none of that name; `key` names it.
+        InputError: there is none of that name; `key` as for `body_ids`.
     """
     number = mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_BODY, name)
     character = is_character(mj)  # and neither the world nor a loose box

@@ -1,0 +1,39 @@
+"""The keys in complaints about stages and parts are those that one may write."""
+
+import pytest
+
+from rotctl.config import load
+from rotctl.errors import InputError
+from rotctl.scenario import build
+
+
+def complaint(overrides):
+    with pytest.raises(InputError) as error:
+        build(load(overrides))
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "key"),
+    [
+        (["behaviour=get_up"], "behaviour.stages.1.held_out"),
+        (["behaviour=back_flip"], "behaviour.stages.2.until.bodies"),
+        (["behaviour=back_flip"], "behaviour.stages.2.tasks.lean.aim.bodies"),
+        (["behaviour=stand_step"], "behaviour.tasks.balance.aim.bodies"),
+        (["behaviour=forward_roll", "+finish=stand"], "behaviour.finish.tasks.balance.aim.bodies"),
+    ],
+)
+def test_a_body_that_is_not_there_is_told_by_its_key(behaviour, key):
+    build(load([*behaviour, f"{key}=[foot]"]))
+    assert complaint([*behaviour, f"{key}=[tail]"]).startswith(
+        f"{key} names the unknown body 'tail'; "
+    )
+
+
+@pytest.mark.parametrize(
+    ("key", "known"),
+    [("catch.out", "behaviour.catch.out"), ("course.radius", "behaviour.course.radius")],
+)
+def test_what_a_choice_adds_is_told_where_it_adds_it(key, known):
+    group = key.partition(".")[0]
+    assert complaint([f"{key}=1"]) == (f"unknown key '{key}'; what +{group}=CHOICE adds is {known}")
