@@ -6,7 +6,9 @@ SHELL := /bin/sh
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
-STAMP  := $(VENV)/.installed
+# The C sources are told by what is in them: a copy or an archive may keep the time of an older file.
+NATIVE := $(shell cksum rotctl/native/*.[ch] | cksum | cut -d ' ' -f 1)
+STAMP  := $(VENV)/.installed-$(NATIVE)
 CODE   := $(VENV)/.compiled
 
 # uv makes the environment: a bare Debian has no venv module. One wheel, pinned by hash
@@ -140,12 +142,13 @@ $(UV):
 # `sync` removes what the lock no longer names. antlr4-python3-runtime (of hydra-core) has no
 # wheel: --build-constraints holds its build tools to the lock's hashes too. rotctl itself goes
 # in last, as a link to this folder, built by the hatchling just installed.
-$(STAMP): requirements.lock pyproject.toml hatch_build.py $(wildcard rotctl/native/*.[ch]) | $(UV)
+$(STAMP): requirements.lock pyproject.toml hatch_build.py | $(UV)
 	test -x $(BIN)/python || $(UV) venv --quiet --clear \
 		--python "$$($(PYTHON) -c 'import sys; print(sys.executable)')" $(VENV)
 	$(UV) pip sync --quiet --python $(BIN)/python --require-hashes --compile-bytecode \
 		--build-constraints requirements.lock requirements.lock
 	$(UV) pip install --quiet --python $(BIN)/python --no-deps --no-build-isolation --editable .
+	@rm -f $(VENV)/.installed*
 	@touch $@
 
 # Byte-code is made here, that of the packages above. A container or a read-only folder keeps none
