@@ -182,20 +182,73 @@ def test_who_bows_past_level_knows_its_sides_by_its_left(scenario, standing, fac
 def test_in_a_wide_stance_the_other_foot_comes_in_first(scenario, standing, apart, beyond, first):
     """Feet so far apart [m]; the capture point so far beyond the left one [m]."""
     left, right = feet(scenario)
+    scene = pushed_beyond(scenario, standing, apart, beyond)
+    for narrow, expected in ((0.3, first), (0.0, "near")):
+        aim = replace(by_sides(scenario), narrow=narrow)
+        swing = aim.swinging(scene, [left, right])
+        assert swing == {"near": left, "far": right}[expected]
+
+
+def by_sides(scenario):
+    """The law that goes by sides."""
+    return replace(law(scenario), away=0.0, aside=0.12, reach=0.75, time=0.18, spin=0.0)
+
+
+def spread(scenario, data, apart):
+    """Put the feet so far apart [m]."""
+    left, right = feet(scenario)
     mj, hips = scenario.model.mj, scenario.model.motors("hip_x", "here")
     places = mj.jnt_qposadr[mj.actuator_trnid[hips, 0]]
     for _ in range(4):  # the feet lie on arcs about the hips
-        mujoco.mj_kinematics(mj, standing)
-        missing = apart - (standing.xpos[left, 1] - standing.xpos[right, 1])
-        standing.qpos[places] += 0.5 * missing / 0.85
-    mujoco.mj_forward(mj, standing)
-    rate = np.sqrt(9.81 / standing.subtree_com[1, 2])
-    speed = rate * (standing.xpos[left, 1] + beyond - standing.subtree_com[1, 1])
-    scene = scene_of(scenario, standing, (0.0, speed, 0.0))
-    for narrow, expected in ((0.3, first), (0.0, "near")):
-        aim = replace(law(scenario), narrow=narrow, spin=0.0)
-        swing = aim.swinging(scene, [left, right])
-        assert swing == {"near": left, "far": right}[expected]
+        mujoco.mj_kinematics(mj, data)
+        missing = apart - (data.xpos[left, 1] - data.xpos[right, 1])
+        data.qpos[places] += 0.5 * missing / 0.85
+    mujoco.mj_forward(mj, data)
+
+
+def pushed_beyond(scenario, data, apart, beyond):
+    """Feet so far apart [m], and the capture point so far beyond the left one [m]."""
+    spread(scenario, data, apart)
+    rate = np.sqrt(9.81 / data.subtree_com[1, 2])
+    speed = rate * (data.xpos[feet(scenario)[0], 1] + beyond - data.subtree_com[1, 1])
+    return scene_of(scenario, data, (0.0, speed, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("apart", "beyond", "first"),
+    [(0.25, 0.3, "near"), (0.7, 0.08, "far")],
+    ids=["the other would not reach it", "the near one has just come out there"],
+)
+def test_the_foot_swings_whose_step_leaves_the_point_least_far_out(
+    scenario, standing, apart, beyond, first
+):
+    left, right = feet(scenario)
+    aim = replace(law(scenario), spin=0.0)
+    scene = pushed_beyond(scenario, standing, apart, beyond)
+    assert aim.swinging(scene, [left, right]) == {"near": left, "far": right}[first]
+
+
+def test_a_foot_that_has_just_lost_the_ground_can_bear(scenario, standing):
+    """As a push to a side takes the weight off it, and the loaded foot is the one to swing."""
+    left, right = feet(scenario)
+    aim = replace(law(scenario), spin=0.0)
+    scene = pushed_beyond(scenario, standing, 0.25, 0.3)
+    assert aim.swinging(scene, [left]) == left
+    assert replace(aim, away=0.0).swinging(scene, [left]) == right
+
+
+@pytest.mark.parametrize("apart", [0.4, 0.6])
+@pytest.mark.parametrize("gather", [0.0, 0.5])
+def test_who_rests_with_feet_far_apart_brings_them_together(scenario, standing, apart, gather):
+    spread(scenario, standing, apart)
+    model = scenario.model
+    low = max(support.lowest_end(model, standing, foot)[2] for foot in feet(scenario))
+    standing.qpos[2] -= low + 0.002
+    aim, step = replace(law(scenario), gather=gather), Step()
+    for speed in (0.0, 0.3):
+        scene = scene_of(scenario, standing, (speed, 0.0, 0.0), step=step)
+        assert {*feet(scenario)} <= {*scene.state.contacts.body.tolist()}
+        assert (aim.next(scene) != step) == (speed == 0.0 and 0.0 < gather < apart)
 
 
 @pytest.mark.parametrize(("way", "speed"), [(0.4, 0.0), (-0.2, 1.5), (0.0, -2.0)])
@@ -247,3 +300,12 @@ def test_a_push_that_fells_who_stands_is_stepped_out_of(direction):
     summary, steps = stood("stand_step", direction, 38, 2001)
     assert summary["success"]
     assert steps >= 1
+
+
+@pytest.mark.parametrize("direction", [0, 90, 225])
+def test_a_hard_push_takes_more_than_one_step(direction):
+    """Two of the three starts at least: any single one may hang on a hair."""
+    assert (
+        sum(stood("stand_step", direction, 55, seed)[0]["success"] for seed in range(2003, 2006))
+        >= 2
+    )

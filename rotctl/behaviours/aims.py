@@ -12,12 +12,13 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.attitudes import Bow, Face, Plane, Upright
 from rotctl.behaviours.balance import Capture, Lunge
+from rotctl.behaviours.heading import Heading
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pivoting import Bring
 from rotctl.behaviours.placing import Above, Ground, Opposite, Watch
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.stepping import Heading, Stepping
+from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.task import Tasks
 from rotctl.mechanics import excursion

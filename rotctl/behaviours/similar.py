@@ -80,7 +80,7 @@ UNITS: Units = {
     | all_of(speed, "rise"),
     Lunge: all_of(length, "fade"),
     Stepping: all_of(
-        length, "margin", "lift", "height", "over", "reach", "width", "aside", "narrow"
+        length, "margin", "lift", "height", "over", "reach", "width", "aside", "narrow", "gather"
     )
     | all_of(time, "time")
     | all_of(speed, "fall"),

@@ -10,7 +10,7 @@ other foot meanwhile, from which the point runs away as e^(omega t).
 """
 
 from functools import lru_cache
-from math import atan2, cos, exp, pi, sin, sqrt
+from math import cos, exp, pi, sin, sqrt
 from typing import Literal
 
 import mujoco
@@ -24,7 +24,7 @@ from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import ROOT_BODY, body_id
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, about_up
+from rotctl.rotations import Array
 from rotctl.settings import STRICT, NonNegative, Positive
 
 DOWN = 0.5  # of a swing, from which on a touch ends it
@@ -34,6 +34,8 @@ UNDER = 0.03  # [m] is wanted so far under the ground: it meets it with some spe
 SOONEST = 0.05  # [s] the shortest time to go that a swing is steered with
 Facing = Literal["front", "left"]
 FACING = {"front": support.forward, "left": support.forward_of_left}
+NEAR = 0.01  # [m] over the ground: a foot that has just lost it
+CALM = 0.2  # [m/s] of the centre of mass: it rests
 STAGGERED = 0.15  # [m] feet so far one before the other: the one behind swings
 
 
@@ -51,12 +53,16 @@ class Stepping:
         over: that the foot goes beyond the capture point [m].
         reach: furthest from the other foot, but for the width [m].
         width: of the stance at least, from foot to foot; legs do not cross [m].
-        aside: capture points further to a side than this are followed by that side's foot [m].
         fall: no step begins while the body falls faster: two legs have to brake it [m/s].
+        aside: capture points further to a side than this are followed by that side's foot [m].
         facing: axis of the pelvis by which it knows its sides: its front, or its left, which stays
             level however far it bows. Past level its front points behind it.
         narrow: in a stance wider than this the foot beyond which the capture point lies does not
             swing out of reach: the other one comes in first [m]; 0 lets it.
+        away: of the two feet the one swings whose step leaves the capture point less far outside
+            them, a metre that the point runs away meanwhile counted as so many of those [-]; 0 goes
+            by `aside` and `narrow` in place of that.
+        gather: who has come to rest with feet further apart brings them together [m]; 0 lets them.
     """
 
     law: Literal["step"]
@@ -69,10 +75,12 @@ class Stepping:
     over: NonNegative
     reach: Positive
     width: NonNegative
-    aside: NonNegative
     fall: Positive
+    aside: NonNegative = 0.0
     facing: Facing = "front"
     narrow: NonNegative = 0.0
+    away: NonNegative = 0.0
+    gather: NonNegative = 0.0
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where the aim stands."""
@@ -94,7 +102,8 @@ class Stepping:
             return step
         corners = support.hull(support.ends(model, state.data, (left, right)))
         hangs = any(support.lifted(model, state, foot) for foot in (left, right))
-        if not hangs and support.outside(corners, self.capture_point(scene)) < self.margin:
+        stays = support.outside(corners, self.capture_point(scene)) < self.margin
+        if not hangs and stays and not self._sprawls(scene):
             return step
         swing = self.swinging(scene, touching)
         return Step(swing, right if swing == left else left, state.time)
@@ -120,22 +129,31 @@ class Stepping:
 
     def landing(self, scene: Scene, left: float) -> Point:
         """Where the middle of the swing foot should be [m], `left` [s] before it is down."""
-        model, state, stance = scene.model, scene.state, scene.step.stance
-        ends = support.ends(model, state.data, (stance,))
-        fx, fy = middle = support.middle(ends)
-        x, y = self.capture_point(scene)
-        px, py = support.within(support.hull(ends), middle, (x, y), 0.0)
-        grown = self._grown(scene, left)
-        dx, dy = px + grown * (x - px) - fx, py + grown * (y - py) - fy
+        return self._landing(scene, scene.step, left)
+
+    def _landing(self, scene: Scene, step: Step, left: float) -> Point:
+        """The same in a step that may never be taken."""
+        model, state = scene.model, scene.state
+        ends = support.ends(model, state.data, (step.stance,))
+        fx, fy = support.middle(ends)
+        x, y = self._escaped(scene, ends, left)
+        dx, dy = x - fx, y - fy
         far = sqrt(dx * dx + dy * dy)
         beyond = 1.0 + self.over / far if far > 0.0 else 1.0
         forward = FACING[self.facing](state, ROOT_BODY)
         ahead, aside = _turned(beyond * dx, beyond * dy, forward, -1.0)
         share = min(1.0, self.reach / (sqrt(ahead * ahead + aside * aside) or 1.0))
-        side = 1.0 if scene.step.swing == self._feet(model)[0] else -1.0
+        side = 1.0 if step.swing == self._feet(model)[0] else -1.0
         aside = side * max(side * share * aside, self.width)
         dx, dy = _turned(share * ahead, aside, forward, 1.0)
         return fx + dx, fy + dy
+
+    def _escaped(self, scene: Scene, ends: list[Point], time: float) -> Point:
+        """Where the capture point is after a time [s], pressed by a foot as near as it reaches."""
+        x, y = self.capture_point(scene)
+        px, py = support.within(support.hull(ends), support.middle(ends), (x, y), 0.0)
+        grown = self._grown(scene, time)
+        return px + grown * (x - px), py + grown * (y - py)
 
     def capture_point(self, scene: Scene) -> Point:
         """Where the body comes to rest, its angular momentum gone, seen from above [m]."""
@@ -156,8 +174,11 @@ class Stepping:
         _, aside = _turned(x - 0.5 * (lx + rx), y - 0.5 * (ly + ry), forward, -1.0)
         ahead, wide = _turned(lx - rx, ly - ry, forward, -1.0)
         near, far = (left, right) if aside > 0.0 else (right, left)
-        if left not in touching or right not in touching:
-            return right if left in touching else left
+        bearing = {*touching, *self._near(scene)} if self.away else {*touching}
+        if left not in bearing or right not in bearing:
+            return right if left in bearing else left
+        if self.away:
+            return min(feet, key=lambda foot: self._cost(scene, foot))
         if abs(aside) > self.aside:
             way = (abs(aside) + 0.5 * abs(wide)) * self._grown(scene, self.time)
             far_out = self.narrow > 0.0 and abs(wide) > self.narrow and way > self.reach
@@ -168,34 +189,48 @@ class Stepping:
             return left if to_left > to_right else right
         return far
 
+    def _cost(self, scene: Scene, swing: int) -> float:
+        """Of a step with this foot [m]: how far the capture point is outside both feet then.
+
+        And how far it has run, away from the foot that stands. Pushed to a side it is better to
+        swing the loaded foot where the other one, on its own side, would not get beyond the point,
+        and worse where the loaded one has just come down out there and all but reached it.
+        """
+        data, (left, right) = scene.state.data, self._feet(scene.model)
+        stance = right if swing == left else left
+        stands = support.ends(scene.model, data, (stance,))
+        swings = support.ends(scene.model, data, (swing,))
+        fx, fy = support.middle(swings)
+        x, y = self._landing(scene, Step(swing, stance), self.time)
+        landed = [(ex + x - fx, ey + y - fy) for ex, ey in swings]
+        (px, py), (nx, ny) = self._escaped(scene, stands, self.time), self.capture_point(scene)
+        missed = max(support.outside(support.hull(stands + landed), (px, py)), 0.0)
+        return missed + self.away * sqrt((px - nx) ** 2 + (py - ny) ** 2)
+
+    def _near(self, scene: Scene) -> list[int]:
+        """The feet that could bear in a moment."""
+        model, data = scene.model, scene.state.data
+        lowest = {foot: support.lowest_end(model, data, foot) for foot in self._feet(model)}
+        return [f for f, (x, y, z) in lowest.items() if z - model.ground.height(x, y) < NEAR]
+
+    def _sprawls(self, scene: Scene) -> bool:
+        """Whether it has come to rest with its feet further apart than people stand."""
+        if not self.gather:
+            return False
+        model, state = scene.model, scene.state
+        vx, vy, _ = state.momentum.com_velocity.tolist()
+        (lx, ly), (rx, ry) = (
+            support.middle(support.ends(model, state.data, (foot,))) for foot in self._feet(model)
+        )
+        apart = (lx - rx) ** 2 + (ly - ry) ** 2 > self.gather**2
+        return apart and vx * vx + vy * vy < CALM**2
+
     def _grown(self, scene: Scene, time: float) -> float:
         """How many times further from the pressure a capture point is after a time [s]."""
         return exp(support.pendulum_rate(scene.model, scene.state) * time)
 
     def _feet(self, model: Model) -> tuple[int, int]:
         return _ids(model.mj, self.bodies)
-
-
-@validated(frozen=True, config=STRICT)
-class Heading:
-    """Turn a foot that swings to where the pelvis faces; no weight for others: attitude.
-
-    Attributes:
-        facing: as for `step`.
-    """
-
-    law: Literal["heading"]
-    facing: Facing = "front"
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
-
-    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
-        """Set the target."""
-        x, y = FACING[self.facing](scene.state, ROOT_BODY)
-        task["target"] = about_up(atan2(y, x))
-        if scene.step.swing != int(task["body"]):
-            task["weight"] = 0.0
 
 
 @lru_cache(maxsize=64)

@@ -1,0 +1,36 @@
+"""How a foot is turned that swings."""
+
+from math import atan2
+from typing import Literal
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours.scene import Scene
+from rotctl.behaviours.stepping import FACING, Facing
+from rotctl.control.task import Tasks
+from rotctl.mechanics.bodies import ROOT_BODY
+from rotctl.mechanics.model import Model
+from rotctl.rotations import about_up
+from rotctl.settings import STRICT
+
+
+@validated(frozen=True, config=STRICT)
+class Heading:
+    """Turn a foot that swings to where the pelvis faces; no weight for others: attitude.
+
+    Attributes:
+        facing: as for `step`.
+    """
+
+    law: Literal["heading"]
+    facing: Facing = "front"
+
+    def check(self, model: Model, key: str) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the target."""
+        x, y = FACING[self.facing](scene.state, ROOT_BODY)
+        task["target"] = about_up(atan2(y, x))
+        if scene.step.swing != int(task["body"]):
+            task["weight"] = 0.0
