@@ -1,11 +1,14 @@
 """Parts of a config that are each valid, and whether they make a run together."""
 
+from collections.abc import Sequence
+
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.behaviours.placing import Watch
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.errors import InputError
+from rotctl.listing import choices, content, named_file
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
@@ -14,6 +17,8 @@ from rotctl.metrics.dive import WATCHED, DiveCriteria
 from rotctl.metrics.judge import ChainCriteria, Criteria
 from rotctl.schema import Config
 from rotctl.settings import ends
+
+ROUNDING = 1e-9  # [s]
 
 
 def require_fit(config: Config, model: Model) -> None:
@@ -56,11 +61,11 @@ def _require_judged(
         wanted = ["rolling"] if behaviour.finish is None else ["finish"]
     if criteria.kind not in wanted:
         *first, last = wanted
-        choices = f"{', '.join(first)} or {last}" if first else last
+        kinds = f"{', '.join(first)} or {last}" if first else last
         raise InputError(
             f"{key}={criteria.name} does not judge behaviour={behaviour.name}, "
             f"a behaviour of kind {behaviour.kind}{' that finishes' * (wanted == ['finish'])}; "
-            f"choose criteria of kind {choices}"
+            f"choose criteria of kind {kinds}, such as criteria={_named(wanted)}"
         )
     if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
         links, rules = len(behaviour.parts), len(criteria.parts)
@@ -78,6 +83,12 @@ def _require_judged(
     for group in getattr(criteria, "order", ()):
         for name in group:
             body_id(model.mj, name, f"{key}.order")
+
+
+def _named(kinds: Sequence[str]) -> str:
+    """The first choice of criteria that says that it is of one of some kinds."""
+    told = {name: content(named_file("criteria", name)) for name in choices("criteria")}
+    return next(name for name, data in told.items() if data.get("kind") in kinds)
 
 
 def _require_watched(behaviour: BehaviourSettings, criteria: DiveCriteria, key: str) -> None:
@@ -99,6 +110,12 @@ def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "
         for number, part in enumerate(behaviour.parts):
             _require_in_time(part.behaviour, duration, f"{part.place(number)}: behaviour")
     if isinstance(behaviour, RollingSettings):
+        halts = [(begin, min(end, duration)) for begin, end in behaviour.halts]
+        if sum(end - begin for begin, end in halts) >= duration - ROUNDING:
+            raise InputError(
+                f"{key}: is told to halt from 0 s to the end, which is no roll; "
+                "behaviour=stand stands"
+            )
         for schedule, time in behaviour.last_told.items():
             if time >= duration:
                 raise InputError(

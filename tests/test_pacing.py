@@ -246,7 +246,13 @@ def test_a_contradicting_pair_is_met_in_its_master():
             ["+finish=stand", "criteria=rolling"],
             "does not judge behaviour=forward_roll, a behaviour",
         ),
-        (["criteria=finish"], "choose criteria of kind rolling"),
+        (["criteria=finish"], "choose criteria of kind rolling, such as criteria=path"),
+        (["behaviour.pace.wait=315"], "behaviour.pace.wait=315: must be less than or equal to 1"),
+        (
+            ["behaviour.pace.schedule=[[0,0],[0.05,0]]"],
+            "behaviour: is told to halt from 0 s to the end, which is no roll",
+        ),
+        (["behaviour.angular_velocity=0"], "is told to halt from 0 s to the end"),
     ],
 )
 def test_one_line_for_what_does_not_fit(overrides, said):

@@ -17,6 +17,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.errors import InputError
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
+Phase = Annotated[Finite, Field(ge=-1, le=1)]  # [rev] who means degrees is told
 Share = Annotated[NonNegative, Field(le=1)]
 Halts = tuple[tuple[float, float], ...]
 SWING = 1 / 18  # [-] of the way in a revolution: amplitude of the height of the centre of mass
@@ -58,10 +59,10 @@ class PaceSettings:
     own: Positive
     calm: Annotated[NonNegative, Field(lt=1)]
     swing: Share
-    swing_from: Finite
+    swing_from: Phase
     surge: Share
-    surge_from: Finite
-    wait: Finite
+    surge_from: Phase
+    wait: Phase
     width: Annotated[Positive, Field(le=0.5)]
     over: Annotated[tuple[str, ...], Field(min_length=1)]
     ahead: Finite
