@@ -49,6 +49,11 @@ def readable(summary: dict[str, Any]) -> str:
             f"drift {number('lateral_drift')} m",
             f"  stall        {number('longest_stall')} s at most",
         ]
+        if "halted" in summary:
+            measured.append(
+                f"  halts        told to from {number('halt_commanded', '.1f')} s on, still for "
+                f"{number('halted', '.1f')} s"
+            )
         if "finish_commanded" in summary:
             measured.append(
                 f"  stands up    from {number('stands_from', '.1f')} s "

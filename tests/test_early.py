@@ -40,6 +40,9 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
             r"1.00 s, 0.\d\d s after it was told to end: it still rolls",
         ),
         (["behaviour=pirouette_one_foot", "duration=1"], "1.00 s, before it turns"),
+        (["behaviour=handstand", "duration=1"], "1.00 s, before forearm_l and forearm_r come down"),
+        (["behaviour=handstand", "duration=7"], "7.00 s, on its hands"),
+        (["behaviour=handstand", "duration=4"], "4.00 s, before foot_l and foot_r come down"),
         (
             ["behaviour=pirouette_one_foot", "behaviour.target_excursion=-360", "duration=2.3"],
             r"2.30 s, turned by -\d+ of -360 deg",

@@ -7,6 +7,7 @@ import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
 from rotctl.metrics.halts import going, unkept
+from rotctl.metrics.halts import measure as told_to
 from rotctl.metrics.rolling import measure
 from rotctl.metrics.rolling_rules import failure_reason
 
@@ -37,6 +38,15 @@ def test_to_stand_where_it_is_told_to_is_no_stall():
     assert found.longest_stall < 0.3
     assert found.slowest_revolution == pytest.approx(2.0, abs=0.3), "the time that it was to roll"
     assert judged(KEPT, ())[1] == "stalled for 3.20 s from t = 7.92 s"
+
+
+def test_how_long_it_stood_is_measured():
+    log = make_log(steps=len(KEPT), turns=KEPT)
+    assert told_to(log, HALTS, 0.1, PERIOD) == {
+        "halt_commanded": 7.0,
+        "halted": pytest.approx(3.0 + 0.1 / 0.5, abs=0.1),  # from less than `least` before on
+    }
+    assert told_to(log, (), 0.1, PERIOD) == told_to(log, ((30.0, math.inf),), 0.1, PERIOD) == {}
 
 
 def test_who_rolls_through_a_halt_is_told():

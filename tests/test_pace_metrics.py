@@ -89,6 +89,13 @@ def test_a_pace_is_told_by_what_it_keeps(overrides, asked, said):
     assert [line.partition("(")[2].rstrip(")") for line in lines[:2]] == list(said)
 
 
+def test_what_is_said_of_its_halts():
+    row = {"success": True, "solver_failures": 0, "halt_commanded": 4.0, "halted": 1.62}
+    assert "  halts        told to from 4.0 s on, still for 1.6 s" in readable(row).splitlines()
+    row = {"success": True, "solver_failures": 0}
+    assert "halts" not in readable(row)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

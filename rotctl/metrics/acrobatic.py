@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
@@ -79,10 +80,9 @@ def judge(
     duration = len(floats(log, "trajectory/time")) * period
     # Hands were on the ground by order, and what came down otherwise is told by that.
     reason = standing.failure(replace(stood, other_contact=0.0), criteria.landing, duration)
-    if criteria.about == "forward" and target > 0.0:
-        criteria = replace(criteria, order=tuple(map(_other_sides, criteria.order)))
-    if wrong := out_of_order(events, criteria):
-        reason = wrong
+    wrong, missing = out_of_order(events, to(target, criteria))
+    if wrong or missing:
+        reason = wrong or f"{' and '.join(sorted(missing))} had not come down at the end"
     elif not abs(revolved - target) < criteria.turn:
         reason = f"turned {revolved:.0f} deg of {target:g}"
     up = floats(log, "contacts/force_realised")[:, :, 2].sum(axis=1)
@@ -108,16 +108,30 @@ def longest_held(
     down = -floats(log, "trajectory/trunk_axes")[:, 2, 2]
     ground = floats(log, "trajectory/ground_height") if floor is None else floor
     height = floats(log, "trajectory/com")[:, 2] - ground
-    borne = np.asarray(log["contacts/count"]) > 0
-    alone = borne & ~standing.on_others(log, criteria.bodies)
     straight = down > math.cos(math.radians(criteria.lean))
-    kept = alone & straight & (height > criteria.height * height[:1])
+    kept = on_hands(log, criteria) & straight & (height > criteria.height * height[:1])
     edges = np.flatnonzero(np.diff(np.concatenate(([False], kept, [False])).astype(int)))
     return float((edges[1::2] - edges[::2]).max(initial=0)) * period
 
 
-def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
-    """How touch-downs differ from the order that is asked for; empty if they do not."""
+def on_hands(log: Arrays, criteria: HeldCriteria) -> NDArray[np.bool_]:
+    """Whether it touches the ground with them alone, in each row (n,)."""
+    borne = np.asarray(log["contacts/count"]) > 0
+    return borne & ~standing.on_others(log, criteria.bodies)
+
+
+def to(target: float, criteria: AcrobaticCriteria) -> AcrobaticCriteria:
+    """The same for a turn [deg], which goes to one side or the other."""
+    if criteria.about != "forward" or target <= 0.0:
+        return criteria
+    return replace(criteria, order=tuple(map(_other_sides, criteria.order)))
+
+
+def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> tuple[str, set[str]]:
+    """How touch-downs differ from the order that is asked for, and what is to come down next.
+
+    Both are empty if all came down in that order.
+    """
     feet = set(criteria.landing.feet)
     groups = [set(group) for group in criteria.order]
     begun, missing = -1, set[str]()  # the group that is coming down, and what of it is not yet
@@ -132,10 +146,10 @@ def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> str:
         elif begun >= 0 and body in groups[begun]:
             continue  # once more
         elif missing or begun + 1 < len(groups) or body not in feet:
-            return f"{body} came down out of order, at {time:.2f} s"
+            return f"{body} came down out of order, at {time:.2f} s", set()
     if begun + 1 < len(groups):
         missing = missing or groups[begun + 1]
-    return f"{' and '.join(sorted(missing))} had not come down at the end" if missing else ""
+    return "", missing
 
 
 def _other_sides(group: Group) -> Group:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotctl.metrics import finish
+from rotctl.metrics.acrobatic import AcrobaticCriteria, on_hands, out_of_order, to
 from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
 from rotctl.metrics.finish import FinishCriteria
@@ -15,10 +16,12 @@ from rotctl.metrics.one_foot import OneFootCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.standing import StandingCriteria, on_others
+from rotctl.metrics.touching import touch_downs
 
 if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
 
+NOW, SLOW = 0.5, 0.1  # [s] before the end, [m/s] who is slower has come to rest
 TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
 
@@ -72,6 +75,8 @@ def _missing(
         return "" if on_others(log, criteria.feet).any() else _standing(log, criteria.rest, period)
     if isinstance(criteria, DiveCriteria):
         return "" if entry(log) is not None else _before_the_end_of_a_flight(log, period)
+    if isinstance(criteria, AcrobaticCriteria):
+        return _over_the_hands(log, criteria, commanded["target_excursion"], lasted, period)
     if isinstance(criteria, OneFootCriteria):
         return _on_one_foot(log, criteria, commanded["target_excursion"], lasted, period)
     if not isinstance(criteria, FlipCriteria) or on_others(log, criteria.landing.feet).any():
@@ -125,6 +130,25 @@ def _on_one_foot(
     turns = way * float(in_frame(log, "trajectory/angular_velocity")[-1, 2])
     short = turned[-1] < abs(target) and turns > TURNS
     return f"turned by {way * turned[-1]:.0f} of {target:.0f} deg" if short else ""
+
+
+def _over_the_hands(
+    log: Arrays, criteria: AcrobaticCriteria, target: float, lasted: float, period: float
+) -> str:
+    """Who has come to rest elsewhere, or is on what is not to come down, is not early."""
+    events, rest = touch_downs(log, period), criteria.landing.rest
+    wrong, missing = out_of_order(events, to(target, criteria))
+    if wrong:
+        return ""
+    if criteria.held and on_hands(log, criteria.held)[-1]:
+        return "on its hands"
+    if not missing:
+        return _resting(f"{events[-1].body} came down", events[-1].time, lasted, rest)
+    com = floats(log, "trajectory/com")[-1 - round(NOW / period) :]
+    moved = np.sqrt((np.diff(com, axis=0) ** 2).sum(axis=1)) / period
+    moves = lasted < rest or bool((moved > SLOW).any())
+    names = " and ".join(sorted(missing))
+    return f"before {names} {'come' if len(missing) > 1 else 'comes'} down" if moves else ""
 
 
 def _standing(log: Arrays, rest: float, period: float) -> str:

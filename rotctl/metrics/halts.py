@@ -1,12 +1,18 @@
 """Where a schedule says 0 it asks for a halt: to stand still is no stall then, but the task."""
 
 from collections.abc import Sequence
+from math import tau
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.metrics.columns import Arrays, Column, in_frame
 from rotctl.metrics.turning import longest_stall
 
+COLUMNS = (
+    Column("halt_commanded", "Told to halt from", "s"),
+    Column("halted", "Longest that it stood still while told to", "s"),
+)
 STILL = 1.0  # [s] for which a halt is kept at least
 LONG = 3.0  # [s] a shorter one has no room for that: it goes on to a squat first, and that stops it
 
@@ -23,6 +29,21 @@ def going(time: NDArray[np.float64], halts: Halts) -> NDArray[np.bool_]:
     for begin, end in halts:
         rolls &= (time < begin) | (time >= end)
     return rolls
+
+
+def measure(log: Arrays, halts: Halts, least: float, period: float) -> dict[str, float]:
+    """Columns of a run that is told to halt; none of one that is not, or is over by then.
+
+    Args:
+        halts: when each begins and ends [s].
+        least: who makes less than that is still [rev].
+        period: of the control [s].
+    """
+    progress = in_frame(log, "trajectory/angular_excursion")[:, 1] / tau
+    time = period * np.arange(len(progress))
+    spans = [progress[(time >= begin) & (time < end)] for begin, end in halts]
+    stood = [longest_stall(span, least, period)[0] for span in spans if len(span)]
+    return {"halt_commanded": halts[0][0], "halted": max(stood)} if stood else {}
 
 
 def unkept(

@@ -27,6 +27,7 @@ from rotctl.metrics import (
     rolling,
     standing,
 )
+from rotctl.metrics import halts as told_to
 from rotctl.metrics.acrobatic import AcrobaticCriteria
 from rotctl.metrics.chain import Link
 from rotctl.metrics.columns import Arrays, floats, solver_failures
@@ -72,6 +73,7 @@ _KINDS = (
     rolling,
     appearance,
     pace,
+    told_to,
     standing,
     orientation,
     flip,
@@ -133,12 +135,13 @@ def judge(
         if isinstance(criteria, FinishCriteria):
             found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
             rolling_log = finish.rolled(log, commanded).log
-            settle = criteria.roll.settle
+            settle, stall = criteria.roll.settle, criteria.roll.stall_progress
         else:
             rolled = rolling.measure(log, criteria, direction, period, halts)
             found, reason = dict(vars(rolled)), failure_reason(rolled, criteria, wanted)
             del found["stalled_at"], found["went_on"]  # of people's interest in a reason alone
-            rolling_log, settle = log, criteria.settle
+            rolling_log, settle, stall = log, criteria.settle, criteria.stall_progress
+        found |= told_to.measure(rolling_log, halts, stall, period)
         found |= vars(appearance.measure(rolling_log, mj, direction, period))
         means = found["angular_velocity_mean"], found["speed_mean"]
         found |= pace.measure(rolling_log, means, commanded, settle)
