@@ -380,6 +380,25 @@ def test_show_prints_the_config_as_yaml(cli):
     assert data["start"]["name"] == "rest"
 
 
+def test_the_config_of_a_run_is_shown(cli, made, tmp_path, monkeypatch):
+    out, row, log = made
+    monkeypatch.chdir(tmp_path)
+    os.symlink(out, "runs")
+    for run in (row["run_id"], log.parent, log):
+        code, stdout, stderr = cli("show", run)
+        assert (code, stdout, stderr) == (0, (log.parent / "config.yaml").read_text(), "")
+    assert cli("show", "runs")[2].startswith("rotctl: override 'runs' has no '='")
+
+
+def test_an_id_of_a_run_elsewhere_is_told_how_to_name_it(cli):
+    assert cli("verify", "0123456789ab") == (
+        2,
+        "",
+        "rotctl: 0123456789ab: no such file, and no run of that id in runs; write the folder that "
+        "it is in before it, as in sweeps/mine/0123456789ab\n",
+    )
+
+
 def test_a_part_of_a_config_is_shown_alone(cli):
     whole = yaml.safe_load(cli("show", "start=rest")[1])
     for key, wanted in (

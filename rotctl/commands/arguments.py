@@ -2,12 +2,14 @@
 
 import argparse
 import os
+import re
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from rotctl.errors import InputError
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
+_ID = re.compile("[0-9a-f]{12}")
 RUNS = Path("runs")  # where runs go unless somebody says otherwise
 
 # Where a command is added; argparse has no public name for it.
@@ -37,10 +39,15 @@ def log_file(path: Path) -> Path:
     """The path of a log, which may be named by the folder of its run, or by its id in `runs`.
 
     Raises:
-        InputError: it is a folder without a log.
+        InputError: it is a folder without a log, or an id of a run that is not in `runs`.
     """
     path = run_folder(path)
     if not os.path.isdir(path):
+        if _ID.fullmatch(str(path)) and not os.path.lexists(path):
+            raise InputError(
+                f"{path}: no such file, and no run of that id in {RUNS}; write the folder that it "
+                f"is in before it, as in sweeps/mine/{path}"
+            )
         return path
     if not os.path.lexists(path / LOG_NAME):
         raise InputError(

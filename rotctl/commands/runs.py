@@ -1,13 +1,22 @@
 """One run and its config: `run`, `list`, `show`, `bench`."""
 
 import argparse
+import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl.bars import bar
-from rotctl.commands.arguments import OVERRIDES_HELP, RUNS, Commands, folder_name, log_file
+from rotctl.commands.arguments import (
+    LOG_NAME,
+    OVERRIDES_HELP,
+    RUNS,
+    Commands,
+    folder_name,
+    log_file,
+    run_folder,
+)
 from rotctl.errors import InputError
 from rotctl.wording import one_line, readable
 
@@ -180,7 +189,8 @@ def add_show(commands: Commands) -> None:
         "show",
         help="print the composed config as YAML",
         description="Print the config that a run with these overrides gets, as YAML: every key "
-        "there can be overridden, as in: rotctl show controller.pose.damping=40",
+        "there can be overridden, as in: rotctl show controller.pose.damping=40. In their place "
+        "a run may be named, by its folder or its id in runs/, to print the config that it had.",
     )
     command.add_argument(
         "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
@@ -191,12 +201,24 @@ def add_show(commands: Commands) -> None:
 
 def show(arguments: argparse.Namespace) -> int:
     """Print the composed config."""
-    from rotctl.config import load
+    from rotctl.config import load, recorded
+    from rotctl.log import RunLog
     from rotctl.written import part_to_yaml, to_yaml
 
-    config = load(arguments.overrides)
+    run = _only_run(arguments.overrides)
+    config = recorded(RunLog.open(log_file(run))) if run else load(arguments.overrides)
     print(part_to_yaml(config, arguments.part) if arguments.part else to_yaml(config), end="")
     return 0
+
+
+def _only_run(overrides: list[str]) -> Path | None:
+    """The run that is named in place of overrides, if one is."""
+    from rotctl.override_files import MARK
+
+    if len(overrides) != 1 or "=" in overrides[0] or overrides[0].startswith(MARK):
+        return None
+    path = run_folder(Path(overrides[0]))
+    return path if path.suffix == ".h5" or os.path.lexists(path / LOG_NAME) else None
 
 
 def add_bench(commands: Commands) -> None:
