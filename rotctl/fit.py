@@ -111,7 +111,7 @@ def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "
             _require_in_time(part.behaviour, duration, f"{part.place(number)}: behaviour")
     if isinstance(behaviour, RollingSettings):
         halts = [(begin, min(end, duration)) for begin, end in behaviour.halts]
-        if sum(end - begin for begin, end in halts) >= duration - ROUNDING:
+        if halts and sum(end - begin for begin, end in halts) >= duration - ROUNDING:
             raise InputError(
                 f"{key}: is told to halt from 0 s to the end, which is no roll; "
                 "behaviour=stand stands"
