@@ -169,8 +169,9 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     from omegaconf import OmegaConf
     from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 
-    from rotctl.explained import explain
+    from rotctl.explained import explain, require_placed
 
+    require_placed(found)
     GlobalHydra.instance().clear()
     try:
         with initialize_config_dir(str(conf_dir()), version_base="1.3"):

@@ -33,18 +33,27 @@ def explain(error: Exception, overrides: list[Override], valid: dict[str, Any]) 
     return clip(" ".join(str(error).split()))
 
 
+def require_placed(overrides: list[Override]) -> None:
+    """See that no key is below a group whose choices are about keys elsewhere.
+
+    Raises:
+        InputError: one is; one line that says where it is.
+    """
+    for override in overrides:
+        key = str(override.key_or_group)
+        group, _, rest = key.partition(".")
+        if rest and choices(group) and package(group) != group:
+            raise InputError(
+                f"unknown key {clip(key)!r}; what +{group}=CHOICE adds is "
+                f"{package(group)}.{clip(rest)}"
+            )
+
+
 def _complaint(override: Override, valid: dict[str, Any]) -> str:
     """Why an override does not fit a config; empty if it does."""
     key = str(override.key_or_group)
-    group, _, rest = key.partition(".")
-    if choices(group) and group not in valid:
-        if not rest:
-            return (
-                f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
-            )
-        return (
-            f"unknown key {clip(key)!r}; what +{group}=CHOICE adds is {package(group)}.{clip(rest)}"
-        )
+    if choices(key) and key not in valid:
+        return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
     if override.package:
         return unknown_key(f"{key}@{override.package}", "", list(valid))
     place, parts = valid, way(key)

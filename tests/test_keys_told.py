@@ -34,6 +34,9 @@ def test_a_body_that_is_not_there_is_told_by_its_key(behaviour, key):
     ("key", "known"),
     [("catch.out", "behaviour.catch.out"), ("course.radius", "behaviour.course.radius")],
 )
-def test_what_a_choice_adds_is_told_where_it_adds_it(key, known):
+@pytest.mark.parametrize("sign", ["", "+", "++"])
+def test_what_a_choice_adds_is_told_where_it_adds_it(key, known, sign):
     group = key.partition(".")[0]
-    assert complaint([f"{key}=1"]) == (f"unknown key '{key}'; what +{group}=CHOICE adds is {known}")
+    assert complaint([f"{sign}{key}=1"]) == (
+        f"unknown key '{key}'; what +{group}=CHOICE adds is {known}"
+    )
