@@ -87,6 +87,18 @@ def test_a_sweep_and_the_same_again(cli, tmp_path):
     assert published(out) == before
 
 
+def test_points_that_are_one_run_are_told(cli, tmp_path):
+    arguments = ["sweep", BRIEF, "seed=range(0,3)", "seed=7,7", "--out", tmp_path, "--jobs", "1"]
+    code, stdout, stderr = cli(*arguments)
+    assert code == 0
+    first, second, *_ = stderr.splitlines()
+    assert first == (
+        "6 points are 1 run: some are the same, or set a key that a later one sets again"
+    )
+    assert second == f"1 run to do in {tmp_path}; on 1 local process"
+    assert stdout.startswith("1 run: 1 succeeded, 0 did not, 0 failed to run\n")
+
+
 def test_a_run_of_the_sweep_is_the_run_of_run(cli, tmp_path):
     cli("run", BRIEF, "seed=1", "--out", tmp_path / "run", "--quiet")
     sweep(tmp_path / "sweep", "seed=1")

@@ -64,7 +64,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     from rotctl.sweep.lock import locked
     from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
     from rotctl.sweep.plan import plan, planned
-    from rotctl.sweep.points import points
+    from rotctl.sweep.points import count, points
     from rotctl.sweep.progress import shown
     from rotctl.sweep.workers import make_engine
 
@@ -89,7 +89,11 @@ def sweep(arguments: argparse.Namespace) -> int:
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
                 there = plan(runs, out, arguments.strict, looking.update, kept)
             if not arguments.quiet:
-                print(at_the_start(there, out, engine.where), file=sys.stderr, flush=True)
+                print(
+                    at_the_start(there, out, engine.where, count(matrix), len(runs)),
+                    file=sys.stderr,
+                    flush=True,
+                )
             with shown(len(runs), len(there.done), arguments.quiet) as progress:
                 tally = launch(there, runs, out, engine, arguments.retries, progress)
     if tally.broken:

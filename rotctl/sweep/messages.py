@@ -32,7 +32,7 @@ def without_running(runs: list[Planned], folder: Path, workers: int, keep: Keep)
         if not os.path.lexists(folder / run.run_id / LOG_NAME)
         and (run.run_id not in listed or not suffices(listed[run.run_id], wish(run.run_id)))
     ]
-    lines = [f"{len(runs)} runs, {len(left)} of them not yet in {folder}"]
+    lines = [f"{_many(len(runs))}, {len(left)} of them not yet in {folder}"]
     lines += [f"  {run.run_id}  {_values(run)}" for run in left[:FEW]]
     if len(left) > FEW:
         lines.append(f"  ... and {len(left) - FEW} more")
@@ -49,21 +49,34 @@ def without_running(runs: list[Planned], folder: Path, workers: int, keep: Keep)
     return "\n".join(lines)
 
 
-def at_the_start(plan: Plan, folder: Path, where: str) -> str:
-    """What was found in the folder, and what will be done where."""
+def at_the_start(plan: Plan, folder: Path, where: str, points: int, runs: int) -> str:
+    """What was found in the folder, and what will be done where.
+
+    Args:
+        points: of the grid; runs: that they are.
+    """
     lines = [f"simulated again: {reason}" for reason in plan.replaced]
+    if points > runs:
+        lines.append(
+            f"{points} points are {_many(runs)}: some are the same, or set a key "
+            "that a later one sets again"
+        )
     for code, count in plan.other_code.items():
         lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")
     there = f", {len(plan.done)} are there already" if plan.done else ""
-    lines.append(f"{len(plan.left)} runs to do in {folder}{there}; on {where}")
+    lines.append(f"{_many(len(plan.left))} to do in {folder}{there}; on {where}")
     return "\n".join(lines)
+
+
+def _many(runs: int) -> str:
+    return f"{runs} run{'s' * (runs != 1)}"
 
 
 def at_the_end(tally: Tally, plan: Plan, folder: Path) -> str:
     """The result in a line, and where to look next."""
     before = f", {len(plan.done)} of them were there before" if plan.done else ""
     return (
-        f"{tally.count} runs: {tally.succeeded} succeeded, {tally.fell} did not, "
+        f"{_many(tally.count)}: {tally.succeeded} succeeded, {tally.fell} did not, "
         f"{len(tally.broken)} failed to run{before}\n"
         f"next       rotctl summarise {shlex.quote(str(folder))}"
     )

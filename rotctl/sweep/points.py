@@ -22,6 +22,7 @@ from rotctl.written import to_dict
 
 PARTS = "behaviour.parts"  # of a chain, which are composed themselves
 TAKEN = ("controller.", "excursion.")  # of a run, by parts of a chain without their own
+Grids = list[list[list[Assignment]]]
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]
 
@@ -55,8 +56,8 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
     Raises:
         InputError: the first thing that is wrong, in one line.
     """
-    grids = [[_values(override) for override in grid] for grid in matrix]
-    if sum(prod(map(len, grid)) for grid in grids) > MOST_POINTS:
+    grids = _grids(matrix)
+    if _count(grids) > MOST_POINTS:
         raise InputError(f"the sweep has more than {MOST_POINTS} points; make several sweeps")
     bases: Bases = {}
     parts: Parts = {}
@@ -65,6 +66,19 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
             texts = tuple(one.text for one in assignments)
             keys = tuple(one.key for one in assignments)
             yield Point(texts, keys, _config(assignments, bases, parts))
+
+
+def count(matrix: Sequence[Sequence[str]]) -> int:
+    """How many points there are; arguments and errors as for `points`."""
+    return _count(_grids(matrix))
+
+
+def _count(grids: Grids) -> int:
+    return sum(prod(map(len, grid)) for grid in grids)
+
+
+def _grids(matrix: Sequence[Sequence[str]]) -> Grids:
+    return [[_values(override) for override in grid] for grid in matrix]
 
 
 def _values(override: str) -> list[Assignment]:
