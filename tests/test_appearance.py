@@ -318,18 +318,27 @@ ACROSS = (
 )
 
 
-def crossing(parts=ACROSS, shoulder=-0.1, hip=0.1):
-    """A revolution in which parts bear one after the other, at so much to the left [m]."""
+def crossing(parts=ACROSS, shoulder=-0.1, hip=0.1, above=0.0, moved=0.0):
+    """A revolution in which parts bear one after the other, at so much to the left [m].
+
+    An upper arm bears so far above its elbow; as its hand comes down, the body moves on [m].
+    """
     named = [("forearm_r" if name == "elbow" else name, rows, up) for name, rows, up in parts]
     log = roll(steps=240, turns=2.0, contacts=named, height=0.85)
+    landing = ACROSS[0][1].start
+    log["trajectory/qpos"][landing + 1 :, 0] += moved
+    log["contacts/position"][landing:, :, 0] += moved  # noted in the middle of its step
     skeleton = Skeleton(adult(), log["trajectory/qpos"])
+    elbow = skeleton.origin(body("forearm_r"))
+    upwards = skeleton.origin(body("upper_arm_r")) - elbow
+    upwards /= np.sqrt((upwards**2).sum(axis=1, keepdims=True))
     for slot, (name, rows, _) in enumerate(parts):
-        aside = {"chest": shoulder, "pelvis": hip}.get(name)
-        if name == "elbow":
-            log["contacts/position"][rows, slot] = skeleton.origin(body("forearm_r"))[rows]
-        elif aside is not None:
-            place = skeleton.origin(body(name))[rows] + [0.0, aside, 0.0]
-            log["contacts/position"][rows, slot] = place
+        place = log["contacts/position"]
+        if name in ("elbow", "upper_arm_r"):
+            place[rows, slot] = (elbow + above * upwards)[rows]
+        elif name in ("chest", "pelvis"):
+            aside = {"chest": shoulder, "pelvis": hip}[name]
+            place[rows, slot] = skeleton.origin(body(name))[rows] + [0.0, aside, 0.0]
     return 2.0 * looks(log).across  # nothing bears in the first of two revolutions
 
 
@@ -351,3 +360,16 @@ def test_across_the_back_is_from_an_arm_to_the_other_hip():
         assert crossing([part for i, part in enumerate(ACROSS) if i != missing]) == 0.0
     assert crossing([*ACROSS, ("head", slice(137, 139), 1.1 * WEIGHT)]) == 0.0, "over the crown"
     assert crossing([*ACROSS, ("head", slice(137, 139), 0.5 * WEIGHT)]) == 1.0
+
+
+def test_the_end_of_an_upper_arm_is_the_elbow_and_no_shoulder():
+    leaning = [("upper_arm_r" if part[0] == "elbow" else part[0], *part[1:]) for part in ACROSS]
+    assert crossing(leaning, above=0.05) == 1.0
+    assert crossing(leaning, above=0.09) == 0.0, "the shoulder, and never the forearm"
+    both = [("upper_arm_r", slice(128, 130), 0.2 * WEIGHT), *ACROSS]
+    assert crossing(both, above=0.09) == 0.0, "the shoulder before the forearm"
+
+
+def test_a_hand_that_comes_down_quickly_is_no_forearm():
+    assert crossing(moved=0.09) == 1.0, "in its first row it is where the hand will be"
+    assert crossing(moved=0.2) == 1.0

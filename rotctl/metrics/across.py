@@ -15,9 +15,10 @@ from rotctl.rotations import Array
 HEAD, SIDES = "head", ("_l", "_r")
 BEARING = 0.05  # [body weights] that a part bears, and does not only touch
 HAND = 0.07  # [m] from the middle of a hand: contacts of a forearm that are the hand's
+ELBOW = 0.07  # [m] from the elbow: contacts of an upper arm that are the forearm's
 ASIDE = 0.03  # [m] from the middle of the back: nearer it is of no side
 CROWN = 1.0  # [body weights] on the head: from there on the roll goes over it
-TRUNK = {"shoulder": ("chest", "upper_arm"), "hip": ("pelvis", "thigh")}
+TRUNK = {"shoulder": "chest", "hip": "pelvis"}
 ORDER = ("hand", "forearm", "shoulder", "hip")
 
 
@@ -32,9 +33,9 @@ def share(
 ) -> float:
     """Share of revolutions that go across the back; NaN without one.
 
-    Of one side the hand bears first, then its forearm, then the shoulder (upper arm, or chest
-    on that side), then the hip of the other (thigh, or pelvis on that side); and the head never
-    bears a whole body's weight before that.
+    Of one side the hand bears first, then its forearm as far as the elbow, then the shoulder
+    (the upper arm above the elbow, or chest on that side), then the hip of the other (thigh, or
+    pelvis on that side); and the head never bears a whole body's weight before that.
 
     Args:
         log: arrays by schema path.
@@ -87,12 +88,13 @@ def _loads(
     load, axes = up / weight, log["trajectory/trunk_axes"]
     on = all_of_them.on
     for side, name in enumerate(SIDES):
-        forearm = (which == body["forearm" + name]) & ~hands[side]
+        arm, lower = body["upper_arm" + name], body["forearm" + name]
+        elbow = _near(all_of_them, which == arm, skeleton.origin(lower), ELBOW)
         found["hand"][:, side] += on(hands[side], load)
-        found["forearm"][:, side] += on(forearm, load)
-        for part, (_, limb) in TRUNK.items():
-            found[part][:, side] += on(which == body[limb + name], load)
-    for part, (middle, _) in TRUNK.items():
+        found["forearm"][:, side] += on((which == lower) & ~hands[side] | elbow, load)
+        found["shoulder"][:, side] += on((which == arm) & ~elbow, load)
+        found["hip"][:, side] += on(which == body["thigh" + name], load)
+    for part, middle in TRUNK.items():
         some = np.flatnonzero(which == body[middle])
         left = np.asarray(axes[row[some], :, 1], dtype=float)
         aside = ((place[some] - skeleton.origin(body[middle])[row[some]]) * left).sum(axis=1)
@@ -104,9 +106,26 @@ def _loads(
 def at_hands(mj: mujoco.MjModel, skeleton: Skeleton, all_of_them: Loads) -> NDArray[np.bool_]:
     """Which contacts (2, k) of either forearm, left first, are near the middle of its hand."""
     hands = [mujoco.mj_name2id(mj, mujoco.mjtObj.mjOBJ_GEOM, "hand" + side) for side in SIDES]
-    found = np.zeros((2, len(all_of_them.body)), dtype=bool)
-    for side, middle in enumerate(skeleton.capsules(hands).ends[:, 0]):
-        some = np.flatnonzero(all_of_them.body == mj.geom_bodyid[hands[side]])
-        off = all_of_them.place[some] - middle[all_of_them.row[some]]
-        found[side, some] = (off**2).sum(axis=1) < HAND**2
+    middles = skeleton.capsules(hands).ends[:, 0]
+    return np.stack(
+        [
+            _near(all_of_them, all_of_them.body == mj.geom_bodyid[hand], middle, HAND)
+            for hand, middle in zip(hands, middles, strict=True)
+        ]
+    )
+
+
+def _near(
+    all_of_them: Loads, some: NDArray[np.bool_], middle: Array, reach: float
+) -> NDArray[np.bool_]:
+    """Which of some contacts (k,) are within reach [m] of a place (n, 3) of a limb.
+
+    A contact is noted where it begins, at some time of its control step, in which a hand that
+    comes down moves on by 8 cm: where the limb is as the step begins or as it ends counts.
+    """
+    found = np.zeros(len(some), dtype=bool)
+    which = np.flatnonzero(some)
+    row, place = all_of_them.row[which], all_of_them.place[which]
+    for there in (middle[row], middle[np.minimum(row + 1, len(middle) - 1)]):
+        found[which] |= ((place - there) ** 2).sum(axis=1) < reach**2
     return found
