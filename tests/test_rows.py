@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from rotctl.behaviours.facing import FACING
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.metrics import appearance
 from rotctl.metrics.rolling import measure
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.skeleton import Skeleton
@@ -31,7 +32,6 @@ ROWS = [
     "stairs",
 ]
 HARDER = ["high_hills", "steep", "stairs_up", "hazards"]
-OTHERS = ["shoulder_roll"]
 
 
 def rolled(*overrides):
@@ -43,7 +43,7 @@ def rolled(*overrides):
     return buffer, metrics, failure_reason(metrics, config.criteria, config.duration)
 
 
-@pytest.mark.parametrize("row", ROWS + HARDER + OTHERS)
+@pytest.mark.parametrize("row", ROWS + HARDER)
 def test_it_rolls(row):
     """From three of four starts: single ones fail now and then."""
 
@@ -54,26 +54,10 @@ def test_it_rolls(row):
     assert sum(1 for _ in islice(filter(rolls, range(4)), 3)) == 3
 
 
-def test_the_shoulder_roll_goes_over_one_shoulder():
-    """The back meets the ground left of the centre of mass, the loins meet it to the right."""
-    buffer, _, _ = rolled("behaviour=forward_roll_3")
-    model = build(load(["behaviour=forward_roll_3"])).model.mj
-    force = np.linalg.norm(buffer.contacts.force_realised.astype(float), axis=2)
-    beside = buffer.contacts.position[..., 1] - buffer.trajectory.com[:, 1, None]
-
-    def mean(name):
-        weight = force * (buffer.contacts.body == model.body(name).id)
-        return float((weight * beside).sum() / weight.sum())
-
-    assert mean("chest") > 0.02  # 0.03 to 0.06 from other starts
-    assert mean("waist") < -0.04
-
-
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
 def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(physics):
-    """In Forward Roll 3, about the left axis, the head bears 0.08, and the chest on its left."""
-    buffer, _, _ = rolled("behaviour=shoulder_roll", f"physics={physics}", "seed=2000")
-    model = build(load(["behaviour=shoulder_roll"])).model.mj
+    buffer, _, _ = rolled("behaviour=forward_roll_3", f"physics={physics}", "seed=2000")
+    model = build(load(["behaviour=forward_roll_3"])).model.mj
     up = buffer.contacts.force_realised[..., 2].astype(float)
 
     def on(name):
@@ -89,6 +73,8 @@ def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(p
     assert to_the_left("pelvis") > 0.6
     assert on("head").sum() / up.sum() < 0.03
     assert on("forearm_r").sum() / up.sum() > 0.03
+    seen = appearance.measure(buffer.arrays(), model, 1.5, 1.0 / 60.0)
+    assert seen.across > 0.5  # mostly 1 in so short a run; before its elbow came down 0.5
 
 
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
