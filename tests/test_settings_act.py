@@ -240,6 +240,11 @@ CASES = {
         r"behaviour\.stages\.1\.tasks\.over\.aim\.(?!law).*",
         seconds=1.5,
     ),
+    "onto the other foot": Case(
+        ("behaviour=pirouette_one_foot",),
+        r"behaviour\.stages\.(3\.until\.angle|4\.tasks\.swing\.aim\.(time|lift|width))",
+        seconds=2.8,
+    ),
     "over the hands": Case(
         ("behaviour=handstand",),
         r"behaviour\.stages\.(3\.until|4\.tasks\.poise\.aim)\.(within|speed|rate|gain|margin)",

@@ -200,7 +200,7 @@ def _of_other_side(said: Any) -> Any:
             changed[named.name] = tuple(map(other_side, value))
         elif named.name == "angle" and value is not None and isinstance(said, Turned | Leaves):
             changed[named.name] = -value
-        elif named.name == "point" and getattr(said, "kind", "point") == "point":  # no margin
+        elif named.name == "point" and getattr(said, "kind", "") != "limits":  # no margin
             x, y, z = value
             changed[named.name] = (x, -y, z)
         elif named.name in ("aim", "when") and value is not None:

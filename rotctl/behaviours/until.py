@@ -8,6 +8,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.launch import leaning
+from rotctl.behaviours.pivoting import Escapes
 from rotctl.behaviours.poising import borne_at
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.touching import Airborne, Enters, Lands, Launched, Touches
@@ -221,6 +222,7 @@ Until = Annotated[
     | Passed
     | Launched
     | Leaves
-    | Over,
+    | Over
+    | Escapes,
     Field(discriminator="kind"),
 ]
