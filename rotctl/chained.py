@@ -59,6 +59,11 @@ def composed(
         _require_here(f"behaviour.parts[{number}]={brief(said[number])}", one, data)
         if number:
             _require_facing(f"behaviour.parts[{number}]", one, compose)
+    if between is not None and chain.get("ways"):
+        raise InputError(
+            f"behaviour.between={brief(between)}: behaviour.ways numbers the parts, and what goes "
+            "between would shift them; give null"
+        )
     if between is not None:
         made = _joined(made, _made("behaviour.between", between, compose))
     _require_few(len(said), len(made) - len(said))

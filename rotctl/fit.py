@@ -56,7 +56,7 @@ def _require_judged(
     wanted = ["standing", "landing", "getting_up", "flip", "dive", "acrobatic"]
     wanted += ["one_foot", "orientation"]
     if isinstance(behaviour, ChainSettings):
-        wanted = ["getting_up"] if behaviour.again else ["chain", "getting_up"]
+        wanted = ["getting_up"] if behaviour.again or behaviour.ways else ["chain", "getting_up"]
     if isinstance(behaviour, RollingSettings):
         wanted = ["rolling"] if behaviour.finish is None else ["finish"]
     if criteria.kind not in wanted:

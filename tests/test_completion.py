@@ -39,7 +39,7 @@ def words(line, capsys):
         ("rotctl run behaviour=back_flip behaviour.shap", ["behaviour.shape="]),
         ("rotctl run behaviour.shap", []),
         ("rotctl run +fi", ["+finish="]),
-        ("rotctl run +finish=", ["+finish=stand"]),
+        ("rotctl run +finish=", ["+finish=seat", "+finish=stand"]),
         ("rotctl run +finish=stand behaviour.finish.af", ["behaviour.finish.after="]),
         ("rotctl run +exp", []),
         ("rotctl sweep +exp", ["+experiment="]),

@@ -61,7 +61,7 @@ def prone():
     """Who lies on the front gets up: the scenario, and the rows of some starts."""
     made = []
     for seed in (2001, 2005, 2020, 2023):
-        scenario = build(load(["behaviour=get_up", f"seed={seed}", "duration=6"]))
+        scenario = build(load(["behaviour=press_up", f"seed={seed}", "duration=6"]))
         made.append(in_memory(scenario)[0].arrays())
     return scenario, made
 
@@ -75,7 +75,7 @@ def test_of_four_starts_two_stand_within_four_seconds(prone):
 def test_of_three_starts_from_a_side_one_stands_within_five_seconds():
     later = replace(UP, within=5.0)
     for seed in (2002, 2004, 2009):
-        scenario = build(load(["behaviour=get_up", "start=side", f"seed={seed}", "duration=7.2"]))
+        scenario = build(load(["behaviour=press_up", "start=side", f"seed={seed}", "duration=7.2"]))
         if not judge(in_memory(scenario)[0].arrays(), later, 1 / 120, UPRIGHT)[1]:
             return
     pytest.fail("none of three, where two of three do")
@@ -109,7 +109,7 @@ def test_it_kneels_before_it_stands(prone):
 
 
 def test_who_lies_on_the_back_turns_onto_the_front_first():
-    config = load(["behaviour=get_up", "start=supine", "seed=2000", "duration=2.5"])
+    config = load(["behaviour=press_up", "start=supine", "seed=2000", "duration=2.5"])
     log = in_memory(build(config))[0].arrays()
     stage, up = log["command/stage"], log["trajectory/trunk_axes"][:, 2, 0]
     row = int(np.argmax(stage == 1))
@@ -121,7 +121,7 @@ def test_who_lies_on_the_back_turns_onto_the_front_first():
 
 def test_a_stage_that_comes_to_nothing_goes_back():
     """Who falls while it stands is low, and begins again from how it lies."""
-    config = load(["behaviour=get_up", "seed=2001", "duration=0.3"])
+    config = load(["behaviour=press_up", "seed=2001", "duration=0.3"])
     again = config.behaviour.stages[-1].otherwise  # low: over
     gather = config.behaviour.stages[1]
     changed = replace(gather, otherwise=replace(again, stage="gather"))
@@ -134,7 +134,7 @@ def test_a_stage_that_comes_to_nothing_goes_back():
 @pytest.mark.parametrize(("speed", "gathers"), [(0.0, True), (2.0, False)])
 def test_who_still_moves_fast_comes_to_lie_first(speed, gathers):
     """On its front it needs no turn, and gathers its hands at once if it is calm."""
-    config = load(["behaviour=get_up", "seed=2001", "duration=0.05"])
+    config = load(["behaviour=press_up", "seed=2001", "duration=0.05"])
     moving = replace(config.start, speed_x=(speed, speed))
     log = in_memory(build(replace(config, start=moving)))[0].arrays()
     assert (log["command/stage"][-1] == 1) == gathers
@@ -146,7 +146,7 @@ def test_it_can_go_to_stages_alone_that_there_are():
             return stage
         return replace(stage, otherwise=replace(stage.otherwise, stage="ovre"))
 
-    settings = load(["behaviour=get_up"]).behaviour
+    settings = load(["behaviour=press_up"]).behaviour
     stages = tuple(wrong(stage) for stage in settings.stages)
     with pytest.raises(ValueError, match="otherwise: no stage 'ovre'; valid: over, gather, kneel"):
         replace(settings, stages=stages)
@@ -222,7 +222,7 @@ def test_low_is_the_centre_of_mass(standing):
 
 def test_a_pose_is_reached_from_rest_to_rest():
     """Half way in half the time; its speeds are those of its way, by finite differences."""
-    scenario = build(load(["behaviour=get_up", "duration=0.1"]))
+    scenario = build(load(["behaviour=press_up", "duration=0.1"]))
     law = ReachSettings({"knee": 1.0, "hip_y_l": -0.4}, 0.8).make(scenario.model, "")
     start = np.linspace(-0.2, 0.3, len(law.end))
 
@@ -242,7 +242,7 @@ def test_a_pose_is_reached_from_rest_to_rest():
 
 
 def test_a_pose_that_is_reached_is_mirrored():
-    scenario = build(load(["behaviour=get_up", "duration=0.1"]))
+    scenario = build(load(["behaviour=press_up", "duration=0.1"]))
     stage = Stage("one", reach=ReachSettings({"knee_l": 1.0, "waist_x": 0.2}, 0.5))
     other = mirrored(stage, scenario.model).reach
     assert other.seconds == 0.5
@@ -310,7 +310,7 @@ def test_how_high_it_is_up_is_judged_by_its_size(height, upright, stands):
 
 
 def test_an_adult_is_up_from_80_centimetres():
-    config = load(["behaviour=get_up"])
+    config = load(["behaviour=press_up"])
     limit = config.criteria.height * upright(build(config).model.mj)
     assert limit == pytest.approx(0.8, abs=1e-6)
 

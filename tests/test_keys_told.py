@@ -16,7 +16,8 @@ def complaint(overrides):
 @pytest.mark.parametrize(
     ("behaviour", "key"),
     [
-        (["behaviour=get_up"], "behaviour.stages.1.held_out"),
+        (["behaviour=press_up"], "behaviour.stages.1.held_out"),
+        (["behaviour=get_up"], "behaviour.ways.0.when.feet"),
         (["behaviour=back_flip"], "behaviour.stages.2.until.bodies"),
         (["behaviour=back_flip"], "behaviour.stages.2.tasks.lean.aim.bodies"),
         (["behaviour=stand_step"], "behaviour.tasks.balance.aim.bodies"),

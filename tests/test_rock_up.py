@@ -15,7 +15,7 @@ from rotctl.simulation.known import StateSettings
 
 UP = GettingUpCriteria("up", "getting_up", ("foot_l", "foot_r"), 4.0, 1.0, 0.8, 20.0, 0.5)
 UPRIGHT = 0.986  # [m] of an adult's centre of mass
-CURL, ROLL, STAND = 1, 4, 5  # stages
+CURL, ROLL, STAND = 1, 4, 6  # stages
 LYING = StateSettings((0.0, 0.0), 0.0, (1.0, 0.0, 1.0, 0.0), (0.0,) * 3, (0.0,) * 3, {}, {})
 
 
@@ -38,13 +38,13 @@ def rocked():
 
 
 @pytest.mark.parametrize("start", ["supine", "side"])
-def test_of_six_starts_one_stands_within_four_seconds(start):
-    """Of all, 89 of 100 do from the back and 57 from a side: that none of six does is 1 in 150."""
+def test_of_four_starts_two_stand_within_four_seconds(start):
+    """Of all, nine of ten do from the back and from a side: that one does at most is 1 in 250."""
     made = (
         simulated(load(["behaviour=rock_up", f"start={start}", f"seed={seed}", "duration=5"]))
-        for seed in (2000, 2003, 2012, 2001, 2002, 2004)
+        for seed in (2000, 2003, 2001, 2004)
     )
-    assert any(not judge(log, UP, 1 / 60, UPRIGHT)[1] for log in made)
+    assert sum(not judge(log, UP, 1 / 120, UPRIGHT)[1] for log in made) >= 2
 
 
 def test_hips_rise_over_the_head_before_the_feet_come_down(rocked):
@@ -68,7 +68,7 @@ def test_the_roll_goes_where_the_feet_lay(rocked):
 
 def test_who_lies_in_the_end_begins_again():
     """Lower than two metres it is all the time: it begins again instead of the last stage."""
-    config = load(["behaviour=rock_up", "seed=2012", "duration=2.6"])
+    config = load(["behaviour=rock_up", "seed=2012", "duration=3.2"])
     log = simulated(replace(config, behaviour=replace(config.behaviour, again=2.0)))
     stage = log["command/stage"].tolist()
     assert ROLL in stage

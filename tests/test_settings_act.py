@@ -210,15 +210,35 @@ CASES = {
         seconds=0.8,
     ),
     "turning onto the front": Case(
-        ("behaviour=get_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
+        ("behaviour=press_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
     ),
-    "reaching": Case(("behaviour=get_up",), r"behaviour\.stages\.1\.reach\.seconds"),
+    "reaching": Case(("behaviour=press_up",), r"behaviour\.stages\.1\.reach\.seconds"),
     "coming to lie first": Case(
-        ("behaviour=get_up", "start.speed_x=[2.0,2.0]"),
+        ("behaviour=press_up", "start.speed_x=[2.0,2.0]"),
         r"behaviour\.stages\.0\.until\.speed",
         seconds=0.05,
     ),
-    "again": Case(("behaviour=rock_up", "seed=2012"), r"behaviour\.again", seconds=2.2),
+    "again": Case(
+        (
+            "behaviour=rock_up",
+            "seed=2012",
+            "disturbance=push",
+            "disturbance.impulse=200",
+            "disturbance.time=2.5",
+            "disturbance.direction=180",
+        ),
+        r"behaviour\.again",
+        seconds=3.0,
+    ),
+    "ways": Case(("behaviour=get_up",), r"behaviour\.ways\.1\.when\.angle", seconds=0.05),
+    "patience on a way": Case(
+        ("behaviour=get_up", "start=supine"), r"behaviour\.ways\.2\.patience", seconds=1.5
+    ),
+    "calm on the back": Case(
+        ("behaviour=rock_back", "start=side"),
+        r"behaviour\.stages\.0\.until\.turning",
+        seconds=0.8,
+    ),
     "striding into a cartwheel": Case(
         ("behaviour=cartwheel",),
         r"behaviour\.stages\.1\.(until\.after|tasks\.(carry|stride)\.aim\.(?!law).*)",

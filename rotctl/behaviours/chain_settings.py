@@ -6,9 +6,11 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours import ways
 from rotctl.behaviours.chaining import Chain, Part, RestSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
+from rotctl.behaviours.ways import Way, Ways
 from rotctl.control import ControllerSettings
 from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -77,6 +79,8 @@ class ChainSettings:
         rest: what ends a part whose last stage has no condition.
         again: who lies lower than that in the last stage of all begins with the first part again
             [m]; the centre of mass over the ground. Nobody does if None.
+        ways: which parts follow each other, by how the body is as it begins, or begins again; who
+            falls back to the first stage of a part chooses anew, too. All in a row if None.
     """
 
     name: str
@@ -84,22 +88,34 @@ class ChainSettings:
     parts: Annotated[tuple[PartSettings, ...], Field(min_length=1, max_length=MOST_PARTS)]
     rest: RestSettings
     again: Positive | None = field(default=None, metadata=SPARSE)
+    ways: Ways | None = field(default=None, metadata=SPARSE)
     source: str = ""
     description: str = ""
 
     def __post_init__(self) -> None:
-        for number, part in enumerate(self.parts[:-1]):
+        if self.ways:
+            ways.check(self.ways, len(self.parts))
+        followed = {part for way in self.taken for part in way.parts[:-1]}
+        last = [way.parts[-1] for way in self.taken]
+        for number in sorted(followed):
+            part = self.parts[number]
             if not part.ends:
                 place = part.place(number).removeprefix("behaviour.")
                 raise ValueError(
                     f"{place}: {part.behaviour.name} rolls on, and others follow it; "
                     "'behaviour=NAME +finish=stand' comes to an end"
                 )
-        if self.again is not None and not self.parts[-1].ends:
-            raise ValueError(
-                f"again={self.again:g}: acts on nothing, {self.parts[-1].behaviour.name} rolls on; "
-                "'behaviour=NAME +finish=stand' comes to an end"
-            )
+        for number in last if self.again is not None else ():
+            if not self.parts[number].ends:
+                raise ValueError(
+                    f"again={self.again:g}: acts on nothing, {self.parts[number].behaviour.name} "
+                    "rolls on; 'behaviour=NAME +finish=stand' comes to an end"
+                )
+
+    @property
+    def taken(self) -> tuple[Way, ...]:
+        """The ways; one through all parts, where none are told."""
+        return self.ways or (Way(tuple(range(len(self.parts)))),)
 
     @property
     def roll_about(self) -> RollAbout:

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours import ways
 from rotctl.behaviours.behaviour import Behaviour, Placement, Signals
 from rotctl.behaviours.facing import frame_of
 from rotctl.behaviours.finishing import Finishing
 from rotctl.behaviours.rolling import Rolling
-from rotctl.behaviours.staged import Staged
+from rotctl.behaviours.staged import Staged, StagedMemory
 from rotctl.behaviours.support import forward
 from rotctl.control import Command, ControllerSettings
 from rotctl.errors import InputError
@@ -56,7 +57,8 @@ class ChainMemory(NamedTuple):
     """What a chain remembers from one control step to the next.
 
     Attributes:
-        part: its number.
+        way: number of the one that it is on.
+        part: number of the part.
         inner: what that remembers.
         heading: of it [deg].
         begun: when it began [s].
@@ -64,6 +66,7 @@ class ChainMemory(NamedTuple):
         rested: for how long [s].
     """
 
+    way: int
     part: int
     inner: Any
     heading: float
@@ -90,8 +93,13 @@ class Chain:
         """
         self._settings, self._model, self._period = settings, model, 1.0 / control.rate
         self._feet = {*body_ids(model.mj, settings.rest.feet, "behaviour.rest.feet")}
+        self._ways = settings.taken
+        for number, way in enumerate(self._ways):
+            if way.when:
+                way.when.check(model, f"behaviour.ways.{number}.when")
+        later = {number for way in self._ways for number in way.parts[1:]}
         for number, part in enumerate(settings.parts):
-            if number and part.behaviour.roll_about == "head":
+            if number in later and part.behaviour.roll_about == "head":
                 raise InputError(
                     f"{part.place(number)}: {part.behaviour.name} rolls about the head, "
                     "lying, and cannot begin from standing"
@@ -118,29 +126,47 @@ class Chain:
     def begin(self, pitch: float, state: State) -> ChainMemory:
         """Memory at the start."""
         heading, height = self._settings.parts[0].behaviour.heading, self._height(state)
-        return ChainMemory(0, self._first.begin(pitch, state), heading, state.time, height)
+        way = ways.chosen(self._ways, self._model, state)
+        inner = self._first.begin(pitch, state)
+        memory = ChainMemory(way, 0, inner, heading, state.time, height)
+        first = self._ways[way].parts[0]
+        return self._begun(way, first, memory, state) if first else memory
 
     @property
     def _first(self) -> Behaviour[Any]:
         return self._made(0, self._settings.parts[0].behaviour.heading)
 
     def advance(self, before: ChainMemory, state: State) -> ChainMemory:
-        """Memory now; the next part begins where the present one is over."""
+        """Memory now; the next part begins where the present one is over, or a try failed."""
         behaviour: Behaviour[Any] = self._part(before)
         inner = behaviour.advance(before.inner, _since(before, state))
         rested = before.rested + self._period if self._rests(before, state) else 0.0
         memory = before._replace(inner=inner, rested=rested)
-        following = self._following(memory, state)
-        return memory if following is None else self._begun(following, memory, state)
+        if self._failed(before.inner, memory, state):
+            way = ways.chosen(self._ways, self._model, state)
+            return self._begun(way, self._ways[way].parts[0], memory, state)
+        following = self._following(memory)
+        if following is not None and self._over(memory, state):
+            return self._begun(memory.way, following, memory, state)
+        return memory
 
-    def _following(self, memory: ChainMemory, state: State) -> int | None:
-        """The part that begins now, if one does."""
-        if memory.part + 1 < len(self._settings.parts):
-            return memory.part + 1 if self._over(memory, state) else None
-        again, part = self._settings.again, self._part(memory)
-        if again is None or isinstance(part, Rolling) or not part.at_last(memory.inner):
-            return None
-        return 0 if self._height(state) < again else None
+    def _following(self, memory: ChainMemory) -> int | None:
+        """The part that comes next on the way, if one does."""
+        parts = self._ways[memory.way].parts
+        place = parts.index(memory.part) + 1
+        return parts[place] if place < len(parts) else None
+
+    def _failed(self, before: Any, memory: ChainMemory, state: State) -> bool:
+        """Whether the way has come to nothing, from what the part remembered before."""
+        settings, part, inner = self._settings, self._part(memory), memory.inner
+        patience = self._ways[memory.way].patience
+        at_last = not isinstance(part, Rolling) and part.at_last(inner)
+        if settings.ways and isinstance(inner, StagedMemory) and inner.stage == 0 < before.stage:
+            return True
+        if patience is not None and not at_last and state.time - memory.begun > patience:
+            return True
+        last = at_last and self._following(memory) is None
+        return last and settings.again is not None and self._height(state) < settings.again
 
     def _over(self, memory: ChainMemory, state: State) -> bool:
         part = self._part(memory)
@@ -150,12 +176,12 @@ class Chain:
         rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period
         return rested and part.at_last(memory.inner) if own is None else own
 
-    def _begun(self, number: int, memory: ChainMemory, state: State) -> ChainMemory:
+    def _begun(self, way: int, number: int, memory: ChainMemory, state: State) -> ChainMemory:
         settings = self._settings.parts[number].behaviour
         about = settings.roll_about
         heading = self._facing(memory, state) + (180.0 if about == "right" else 0.0)
         frame = frame_of(about, heading, getattr(settings, "turn_about", "left"))
-        begun = ChainMemory(number, None, heading, state.time, self._height(state))
+        begun = ChainMemory(way, number, None, heading, state.time, self._height(state))
         behaviour: Behaviour[Any] = self._part(begun)
         pitch = frame.turned(state.trunk_axes)
         return begun._replace(inner=behaviour.begin(pitch, _since(begun, state)))

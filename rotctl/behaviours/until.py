@@ -1,7 +1,7 @@
 """When a stage ends: a small closed set of conditions on the state."""
 
 from dataclasses import field
-from math import atan2, radians
+from math import atan2, radians, tau
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -64,19 +64,24 @@ class Near:
 
     Attributes:
         speed: of the centre of mass, at most [m/s]; any if None.
+        turning: of the whole body about the axis that it turns about, at most [rev/s]; likewise.
     """
 
     kind: Literal["near"]
     angle: NonNegative
     speed: Positive | None = field(default=None, metadata=SPARSE)
+    turning: Positive | None = field(default=None, metadata=SPARSE)
 
     def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
-        velocity = scene.state.momentum.com_velocity
+        momentum = scene.state.momentum
+        velocity, turns = momentum.com_velocity, dot(scene.turning, momentum.angular_velocity)
         if self.speed is not None and dot(velocity, velocity) > self.speed**2:
+            return False
+        if self.turning is not None and abs(turns) > tau * self.turning:
             return False
         return abs(scene.target - scene.turned) <= radians(self.angle)
 
