@@ -77,6 +77,7 @@ PACED = ("behaviour=forward_roll", "duration=2", "seed=2003")
         (*PACED, "behaviour.pace.keep=speed", "behaviour.pace.over=[foot_l,shin]"),
         (*PACED, "behaviour.pace.schedule=[[0.5,0.3],[1.0,1.2]]"),
         (*PACED, "behaviour.pace.schedule=[[0.3,0],[1.5,0.8]]", "behaviour.pace.easing=1"),
+        (*PACED, "behaviour.angular_velocity=0.3", "behaviour.pace.pose={knee:2.5,elbow_l:0.3}"),
         ("excursion=integral", "duration=1"),
         ("+behaviour.oblique=[12,5,-3,2,1]", "duration=1"),
         ("behaviour.poses.a.knee=[1.9,0.1,-0.2,0.1,0.1,-0.05,0.07]", "duration=1"),
@@ -102,6 +103,7 @@ def test_every_number_of_a_pace_acts_alike(both):
         "behaviour.pace.schedule=[[0.8,0.2]]",
         "behaviour.pace.settling=[2.5,3.5]",
         "behaviour.pace.approach=0.2",
+        "behaviour.pace.leave=0.3",
         *(f"behaviour.pace.{name}={value}" for name, value in changed.items()),
     )
 
@@ -119,7 +121,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     """Whoever adds a setting gives it to C, or has `Rolling.compiled` refuse it."""
     assert {field.name for field in fields(PaceSettings)} == {
         *PACE,
-        *("keep", "over", "settling", "schedule", "easing", "approach"),
+        *("keep", "over", "settling", "schedule", "easing", "approach", "leave", "pose"),
     }
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),

@@ -64,7 +64,7 @@ def test_what_is_commanded_quicker_than_its_own_pace_flows_quicker():
 
 def test_early_it_waits_over_its_feet():
     here = wanted(0.05, late=-0.4, ahead=0.1)
-    assert here == pytest.approx((0.0, 0.0, 5.0, 0.0), abs=1e-12)
+    assert here == pytest.approx((0.0, 0.0, 5.0, 0.0, 1.0), abs=1e-12)
     behind = wanted(0.05 - 0.02, late=-0.4, ahead=-0.1)
     assert behind.rate == pytest.approx(4.0 * 0.02, rel=0.1)
     assert behind.speed == pytest.approx(3.0 * 0.2, rel=0.1)
@@ -141,7 +141,7 @@ def test_a_schedule_takes_over_at_its_times():
 
 def test_at_a_command_of_nothing_it_waits_at_once_and_goes_on_at_once():
     pace = Pace(replace(SETTINGS, schedule=((2.0, 0.0), (5.0, 0.6))), 0.6, 0.0)
-    assert pace.at(tau * 0.05, 0.1, 0.0, 3.0) == pytest.approx((0.0, 0.0, 5.0, 0.0), abs=1e-12)
+    assert pace.at(tau * 0.05, 0.1, 0.0, 3.0) == pytest.approx((0.0, 0.0, 5.0, 0.0, 1.0), abs=1e-12)
     clock = Clock(7.0, 0.3)
     for row in range(120, 301):  # nothing is made good after a halt
         clock = pace.tick(clock, 6.8, row * PERIOD, PERIOD)

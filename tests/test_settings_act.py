@@ -89,7 +89,9 @@ CASES = {
         seconds=2.5,
     ),
     "pace that waits down a slope": Case(
-        ("behaviour=decline",), r"behaviour\.pace\.(approach|back|patience)", seconds=2.5
+        ("behaviour=decline_crouch",),
+        r"behaviour\.pace\.(approach|leave|back|patience|pose\..*)",
+        seconds=2.5,
     ),
     "pace that halts": Case(
         ("behaviour=forward_roll", "behaviour.pace.schedule=[[0.2,0]]"),

@@ -120,10 +120,11 @@ WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are fo
     "CatchSettings.out", "FinishSettings.after", "FinishSettings.ahead",
     "FinishSettings.revolutions", "FinishSettings.within", "PaceSettings.approach",
     "PaceSettings.back", "PaceSettings.brake", "PaceSettings.calm", "PaceSettings.gain",
-    "PaceSettings.most", "PaceSettings.patience", "PaceSettings.schedule", "PaceSettings.surge",
-    "PaceSettings.surge_from", "PaceSettings.swing", "PaceSettings.swing_from",
-    "PaceSettings.wait", "PaceSettings.width", "PathSettings.ahead", "PathSettings.legs",
-    "PathSettings.most", "PathSettings.pull", "RatesSettings.schedule",
+    "PaceSettings.leave", "PaceSettings.most", "PaceSettings.patience", "PaceSettings.pose",
+    "PaceSettings.schedule", "PaceSettings.surge", "PaceSettings.surge_from",
+    "PaceSettings.swing", "PaceSettings.swing_from", "PaceSettings.wait", "PaceSettings.width",
+    "PathSettings.ahead", "PathSettings.legs", "PathSettings.most", "PathSettings.pull",
+    "RatesSettings.schedule",
 }  # fmt: skip
 
 

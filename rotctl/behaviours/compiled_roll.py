@@ -10,6 +10,7 @@ from rotctl.behaviours.catching import Catch
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.pacing import Clock, Pace
 from rotctl.behaviours.remembering import RollingMemory
+from rotctl.behaviours.waiting import Waiting
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.motion import PosePair, ReferencePair
 from rotctl.native.layout import structure
@@ -82,6 +83,7 @@ class CompiledRoll:
             count=len(over),
             easing=settings.easing or 0.0,
             approach=settings.approach or settings.width,
+            leave=settings.leave or settings.width,
             times=self._at(np.array(pace.times, float)),
             rates=self._at(np.array(pace.rates, float)),
             over=self._at(np.array(over, np.int32)),
@@ -90,6 +92,10 @@ class CompiledRoll:
         made.settling[:], made.usual[:] = settings.settling, damping.ravel()
         self._kept.append(made)
         self.constants.pace, self.constants.way[:] = ctypes.addressof(made), way
+
+    def add_waiting(self, waiting: Waiting) -> None:
+        """Settle into a pose while it waits, too."""
+        self.constants.waiting = self._at(waiting.angles)
 
     def add_catch(self, catch: Catch) -> None:
         """Catch itself, too."""

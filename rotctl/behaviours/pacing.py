@@ -39,6 +39,8 @@ class PaceSettings:
         wait, width: phase in which it waits, and how far to either side it does not flow [rev].
         approach: from so far before that phase on it waits, instead [rev]: who is braked on the
             way up from the seat falls back onto it. None: `width`.
+        leave: so far beyond it it waits no longer [rev]: who hangs over the hands goes on. None:
+            `width`.
         back: how far its poses go back while it waits [rev]. What leads a body that turns is, for
             one that stands still, a pose in which its feet have left the ground.
         over: bodies over which it waits; a name without a side is both.
@@ -50,6 +52,9 @@ class PaceSettings:
         patience: how far ahead of its clock it may be [rev]; the clock forgets what is beyond.
         easing: speed below which a halt brakes less and less [m/s]: stiff dampers stop who comes
             in, and let who stands there sink onto the seat. None: it brakes as in any wait.
+        pose: angles of joints that it takes while it waits, by their names; one without a side is
+            both [rad]. On the way up from the seat they come to it from `width` before on, so that
+            the hands are there in time. None: its poses are those of its phase.
         schedule: times and what is commanded from then on in place of the kept velocity
             [s, rev/s or m/s]; at 0 it halts in the next squat.
     """
@@ -72,8 +77,10 @@ class PaceSettings:
     most: Annotated[Positive, Field(ge=1)]
     easing: Positive | None = None
     approach: Annotated[Positive, Field(le=0.5)] | None = None
+    leave: Annotated[Positive, Field(le=0.5)] | None = None
     back: Annotated[NonNegative, Field(le=0.5)] = 0.0
     patience: Annotated[Positive, Field(le=SLIP)] = SLIP
+    pose: Annotated[dict[str, Finite], Field(min_length=1)] | None = None
     schedule: Annotated[tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000)] = ()
 
     def __post_init__(self) -> None:
@@ -109,12 +116,14 @@ class Wanted(NamedTuple):
         speed: [m/s].
         brake: on the dampers along the way [-].
         back: how far the poses stay behind [rev].
+        waits: how far the poses have come to that of one who waits [-].
     """
 
     rate: float
     speed: float
     brake: float
     back: float
+    waits: float
 
 
 class Pace:
@@ -201,12 +210,14 @@ class Pace:
         base = flow * (1.0 + (max(share, 1.0) - 1.0) * here)
         rate = base * (1.0 - s.swing * cos(tau * (turn - s.swing_from)))
         speed = s.travel * base * (1.0 - s.surge * cos(tau * (turn - s.surge_from)))
-        waits = early * _near(before, (s.approach or s.width) if before > 0.0 else s.width)
+        reach = (s.approach if before > 0.0 else s.leave) or s.width
+        waits = early * _near(before, reach)
         return Wanted(
             rate + waits * (s.settling[0] * before - rate),
             speed + waits * (s.settling[1] * (s.ahead - ahead) - speed),
             1.0 + waits * (self._brake(asked, goes) - 1.0),
             waits * s.back,
+            early * _near(before, s.width if before > 0.0 else reach),
         )
 
     def _brake(self, asked: float, goes: float) -> float:

@@ -25,6 +25,7 @@ from rotctl.behaviours.compiled_roll import CompiledRoll
 from rotctl.behaviours.facing import UP
 from rotctl.behaviours.pacing import Pace
 from rotctl.behaviours.remembering import Remembering, RollingMemory
+from rotctl.behaviours.waiting import Waiting
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
@@ -76,6 +77,7 @@ class Rolling:
         self._remembering = Remembering(settings, bearings, self._pace, measured, self._period)
         self._over = body_ids(model.mj, list(given.over), "behaviour.pace.over") if given else []
         self._poses = settings.make_poses(model)
+        self._waiting = Waiting(given.pose, model) if given is not None and given.pose else None
         about, catch = settings.roll_about, settings.catch
         self._catch = Catch(catch, model, about) if catch is not None else None
         gains = gains_of(control, self.tasks)
@@ -130,7 +132,7 @@ class Rolling:
     def command(self, memory: RollingMemory, state: State) -> Command:
         """What rolling wants at this instant."""
         now, measure, on = memory.excursion, self._measured.measure, memory.bearing
-        phase = now.phase
+        phase, waits = now.phase, 0.0
         velocity, spin = self._speed * on.way, self._rate * on.left
         self._velocities[:] = self._constant(on)
         if self._pace:
@@ -143,7 +145,11 @@ class Rolling:
             self._damping[0, 0] *= wanted.brake
             self._damping[1, 1] *= wanted.brake
             phase -= math.tau * wanted.back
+            waits = wanted.waits
         pose_a, pose_b = self._poses.at(phase)
+        if self._waiting is not None:
+            settled = self._waiting.settled
+            pose_a, pose_b = settled(pose_a, waits), settled(pose_b, waits)
         if self._catch is not None:
             rise = self._catch.rise(memory.axis, state.momentum.angular_velocity)
             pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
@@ -206,4 +212,6 @@ class Rolling:
             made.add_catch(self._catch)
         if self._pace:
             made.add_pace(self._pace, on.way, self._over, self._usual)
+        if self._waiting is not None:
+            made.add_waiting(self._waiting)
         return made

@@ -95,7 +95,8 @@ typedef struct {
 
 // A pace's settings; behaviours/pacing.py. Times of changes are (changes), rates one more.
 typedef struct {
-  double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, approach, back, ahead;
+  double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, approach, leave;
+  double back, ahead;
   double settling[2], brake, gain, most, patience, easing, usual[6];
   int by_speed, changes, count;
   const double *times, *rates;
@@ -112,13 +113,14 @@ typedef struct {
 } Catch;
 
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
-// `coefficients` (2, waves, nu); its two tasks are where the command has them.
+// `coefficients` (2, waves, nu), and `waiting` (nu) or none is of behaviours/waiting.py; its two
+// tasks are where the command has them.
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
   double oblique[WAVES];
   int column, integral, rows, waves, oblique_waves;
-  const double *table, *rise, *coefficients, *low, *high;
+  const double *table, *rise, *coefficients, *low, *high, *waiting;
   const Pace* pace;
   const Catch* catch;
   Task* task;

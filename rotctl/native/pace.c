@@ -44,8 +44,9 @@ static double near(double before, double width) {
   return fabs(before) < width ? 0.5 + 0.5 * cos(mjPI * before / width) : 0;
 }
 
-// `at`; how far the poses go back [rad]
-static double keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMemory* it) {
+// `at`; `back` is how far the poses go back [rad], `waiting` how far they come to that of a wait
+static void keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMemory* it, double* back,
+                      double* waiting) {
   const Pace* p = r->pace;
   tick(r, d, now, it);
   double turn = it->phase / TURN, before = modulo(p->wait - turn + 0.5, 1) - 0.5;
@@ -56,7 +57,7 @@ static double keep_pace(const Roll* r, const mjData* d, const Reading* now, Roll
   double base = flow * (1 + (fmax(share, 1) - 1) * here);
   double rate = base * (1 - p->swing * cos(TURN * (turn - p->swing_from)));
   double speed = p->travel * base * (1 - p->surge * cos(TURN * (turn - p->surge_from)));
-  double waits = early * near(before, before > 0 ? p->approach : p->width);
+  double waits = early * near(before, before > 0 ? p->approach : p->leave);
   double brake = 1 + waits * (brake_of(p, asked, along(r->axes, now->com_velocity)) - 1);
   rate += waits * (p->settling[0] * before - rate);
   speed += waits * (p->settling[1] * (p->ahead - ahead(r, d, now)) - speed);
@@ -66,5 +67,6 @@ static double keep_pace(const Roll* r, const mjData* d, const Reading* now, Roll
     r->task[0].damping[i] = p->usual[i] * (i == 0 ? brake : 1);
     r->task[1].damping[i] = p->usual[3 + i] * (i == 1 ? brake : 1);
   }
-  return TURN * (waits * p->back);
+  *back = TURN * (waits * p->back);
+  *waiting = early * near(before, before > 0 ? p->width : p->leave);
 }

@@ -91,12 +91,24 @@ static void spread(const Catch* c, const Reading* now, const RollMemory* it, dou
   }
 }
 
+// behaviours/waiting.py `settled`
+static void settle(const double* angles, double waits, int nu, double* pose) {
+  for (int i = 0; i < nu; i++) {
+    if (!isnan(angles[i])) pose[i] += waits * (angles[i] - pose[i]);
+  }
+}
+
 // `advance` and `command`: `it` is the memory of the period before, and then of this one.
 static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading* now,
                     RollMemory* it, const Command* w) {
   turn_along(r, now, it);
-  double back = r->pace ? keep_pace(r, d, now, it) : 0;
+  double back = 0, waits = 0;
+  if (r->pace) keep_pace(r, d, now, it, &back, &waits);
   poses_at(r, it->phase - back, s->nu, w->pose_a, w->pose_b);
+  if (r->waiting) {
+    settle(r->waiting, waits, s->nu, w->pose_a);
+    settle(r->waiting, waits, s->nu, w->pose_b);
+  }
   if (r->catch) spread(r->catch, now, it, w->pose_a), spread(r->catch, now, it, w->pose_b);
   for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
   missing_turn(r, it, d->time, r->task[1].target);
