@@ -27,6 +27,7 @@ from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.touching import Airborne, Launched, Touches
 from rotctl.behaviours.until import After, Leaves, Low, Near, Over, Passed, Still
+from rotctl.behaviours.ways import OnFeet, Way
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.similar import similar_gains
 from rotctl.mechanics.stature import Likeness
@@ -105,7 +106,7 @@ UNITS: Units = {
     Above: all_of(length, "ahead", "height", "most"),
     Opposite: all_of(length, "ahead", "height"),
     Low: all_of(length, "height"),
-    Near: all_of(speed, "speed"),
+    Near: all_of(speed, "speed") | all_of(rate, "turning"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LevellingSettings: all_of(time, "interval"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
@@ -115,6 +116,8 @@ UNITS: Units = {
     CatchSettings: all_of(time, "lead"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
     ChainSettings: all_of(length, "again"),
+    OnFeet: all_of(length, "out") | all_of(speed, "speed"),
+    Way: all_of(time, "patience"),
     RestSettings: all_of(time, "seconds") | all_of(speed, "speed"),
 }
 """Of settings, what has a unit that grows; `TaskSettings.point` has one for points."""
