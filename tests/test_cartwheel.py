@@ -222,6 +222,34 @@ def test_a_limb_is_lowered_over_the_turn(standing):
     assert row["target"][2] == pytest.approx(0.5 * (high + 0.03))
 
 
+def test_a_limb_is_set_down_where_the_body_will_come_to_rest(standing):
+    """Along the way by the turn that is left, and no further from `distance` than there is room."""
+    momentum, (along, across) = standing.state.momentum, ways(standing)
+    moving = momentum._replace(
+        com_velocity=0.8 * along, angular_velocity=2.0 * np.sign(standing.target) * standing.turning
+    )
+    scene = standing._replace(
+        turned=np.sign(standing.target) * np.radians(60.0),
+        state=standing.state._replace(momentum=moving),
+    )
+    hand = scene.state.data.xpos[scene.model.mj.body("forearm_r").id]
+    left = np.radians(30.0) / 2.0  # [s]
+    rests = momentum.com @ along + 0.8 * (left + np.sqrt(momentum.com[2] / 9.81)) - 0.07
+    far = rests - hand @ along
+    for distance, room, wanted in (
+        (far + 0.1, 0.2, far),
+        (far + 0.1, 0.05, far + 0.05),
+        (far - 0.1, 0.05, far - 0.05),
+        (far + 0.1, 0.0, far + 0.1),
+    ):
+        row = np.zeros(1, TASK)[0]
+        row["body"], row["weight"] = scene.model.mj.body("forearm_l").id, 1.0
+        aim = Place("place", "forearm_r", distance, (30.0, 90.0), 0.03, 0.0, room, 0.07)
+        aim.fill(row, "point", scene)
+        assert (row["target"][:3] - hand) @ along == pytest.approx(wanted, abs=1e-9)
+        assert row["target"][:3] @ across == pytest.approx(momentum.com @ across, abs=1e-9)
+
+
 def test_a_foot_that_strides_is_there_in_time(standing):
     """By integrating what it asks for: at the place, at rest."""
     scene = standing

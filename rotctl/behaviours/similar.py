@@ -98,7 +98,7 @@ UNITS: Units = {
     Carry: all_of(length, "margin", "heights", "throw")
     | all_of(speed, "speed")
     | all_of(rate, "eager"),
-    Place: all_of(length, "distance", "height", "ahead"),
+    Place: all_of(length, "distance", "height", "ahead", "room", "short"),
     Stride: all_of(length, "distance", "lift", "height") | all_of(time, "time"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),

@@ -24,6 +24,7 @@ from rotctl.rotations import Array, cross, dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
+SLOWEST = 1.0  # [rad/s] the slowest turn by which the time to a touch-down is reckoned
 
 
 class Ways(NamedTuple):
@@ -150,6 +151,8 @@ class Place:
         angles: turned, between which it goes up or down there [deg], in the target's sense.
         height: of the point over the ground in the end [m]; under it, and it comes down for sure.
         ahead: of where the body comes to rest, across the way [m].
+        room: that it may be set down nearer or further than `distance`, to be
+        short: of where the body comes to rest along the way when the limb is down [m].
     """
 
     law: Literal["place"]
@@ -158,6 +161,8 @@ class Place:
     angles: tuple[Finite, Finite]
     height: Finite
     ahead: Finite = 0.0
+    room: NonNegative = 0.0
+    short: Finite = 0.0
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where the aim stands."""
@@ -168,9 +173,9 @@ class Place:
         body, state, data = int(task["body"]), scene.state, scene.state.data
         along, across = ways(scene)
         (beyond,) = body_ids(scene.model.mj, [self.beyond])
-        from_here = data.xpos[beyond]
+        from_here = dot(data.xpos[beyond], along)
         aside = rests(scene, across) + self.ahead
-        goal = (dot(from_here, along) + self.distance) * along + aside * across
+        goal = (from_here + self._far(scene, along, from_here)) * along + aside * across
         x, y = float(goal[0]), float(goal[1])
         first = float(scene.begin.place[body][2])
         last = scene.model.ground.height(x, y) + self.height
@@ -183,6 +188,18 @@ class Place:
         span = radians(self.angles[1] - self.angles[0])
         task["velocity"] = dot(state.momentum.com_velocity, across) * across
         task["velocity"][2] = turns * (last - first) / span if 0.0 < share < 1.0 else 0.0
+
+    def _far(self, scene: Scene, along: Array, from_here: float) -> float:
+        """Along the way from the other body [m]."""
+        if not self.room:
+            return self.distance
+        momentum = scene.state.momentum
+        turns = abs(dot(momentum.angular_velocity, scene.turning))
+        left = radians(self.angles[1]) - copysign(1.0, scene.target) * scene.turned
+        time = max(left, 0.0) / max(turns, SLOWEST)
+        speed = dot(momentum.com_velocity, along)
+        far = rests(scene, along) + time * speed - self.short - from_here
+        return min(max(far, self.distance - self.room), self.distance + self.room)
 
 
 @validated(frozen=True, config=STRICT)
