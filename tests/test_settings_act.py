@@ -250,7 +250,13 @@ CASES = {
     "hands of a cartwheel": Case(
         ("behaviour=cartwheel",),
         r"behaviour\.stages\.(2\.until\.distance|3\.tasks\.(carry|reach)\.aim\.(?!law).*)",
+        {r".*\.reach\.aim\.short": "of places with room, as its first foot's"},
         seconds=2.0,
+    ),
+    "first foot of a cartwheel": Case(
+        ("behaviour=cartwheel",),
+        r"behaviour\.stages\.6\.tasks\.step_down\.aim\.(room|short)",
+        seconds=2.8,
     ),
     "onto the hands": Case(
         ("behaviour=handstand",),
