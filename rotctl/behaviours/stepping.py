@@ -166,6 +166,16 @@ class Stepping:
 
     def swinging(self, scene: Scene, touching: list[int]) -> int:
         """The foot to swing, of those that touch the ground: never the only one that stands."""
+        left, right = feet = self._feet(scene.model)
+        bearing = {*touching, *self._near(scene)} if self.away else {*touching}
+        if left not in bearing or right not in bearing:
+            return right if left in bearing else left
+        if self.away:
+            return min(feet, key=lambda foot: self._cost(scene, foot))
+        return self._by_sides(scene)
+
+    def _by_sides(self, scene: Scene) -> int:
+        """The foot of the side to which the capture point lies, else the one that is behind."""
         model, state = scene.model, scene.state
         left, right = feet = self._feet(model)
         (lx, ly), (rx, ry) = (support.middle(support.ends(model, state.data, (f,))) for f in feet)
@@ -174,11 +184,6 @@ class Stepping:
         _, aside = _turned(x - 0.5 * (lx + rx), y - 0.5 * (ly + ry), forward, -1.0)
         ahead, wide = _turned(lx - rx, ly - ry, forward, -1.0)
         near, far = (left, right) if aside > 0.0 else (right, left)
-        bearing = {*touching, *self._near(scene)} if self.away else {*touching}
-        if left not in bearing or right not in bearing:
-            return right if left in bearing else left
-        if self.away:
-            return min(feet, key=lambda foot: self._cost(scene, foot))
         if abs(aside) > self.aside:
             way = (abs(aside) + 0.5 * abs(wide)) * self._grown(scene, self.time)
             far_out = self.narrow > 0.0 and abs(wide) > self.narrow and way > self.reach
