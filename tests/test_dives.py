@@ -122,7 +122,7 @@ def test_other_dives_enter_straight_too(behaviour, target, height, shape):
 
 def test_a_loose_box_is_not_what_it_stood_on():
     """Two metres down where the ground is higher, it is not the lowest of the body."""
-    words = ["behaviour=get_up", "terrain=hazards", "terrain.run_in=0", "duration=5"]
+    words = ["behaviour=press_up", "terrain=hazards", "terrain.run_in=0", "duration=5"]
     scenario = build(load(words))
     staged, state = scenario.behaviour, next(iter(Episode(scenario))).state
     memory = staged.begin(0.0, state)
