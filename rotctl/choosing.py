@@ -1,9 +1,10 @@
 """What choices of config groups make together: what Hydra would make of them, without it.
 
 To import Hydra and to compose with it takes longer than to simulate ten seconds. Most configs are
-plain: files whose defaults name others of their group, or choices for other groups, and that may
-say in a first line `# @package` which key they are about. These are composed here; for
-whatever else is in a file Hydra is asked. A test holds all that is shipped to what Hydra makes.
+plain: files whose defaults name others of their group or of one that is about a part of theirs, or
+choices for other groups, and that may say in a first line `# @package` which key they are about.
+These are composed here; for whatever else is in a file Hydra is asked. A test holds all that is
+shipped to what Hydra makes.
 """
 
 import re
@@ -23,6 +24,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _NO_WORDS = ("true", "false", "null", "inf", "nan")  # what YAML or Hydra takes for more
 _PACKAGE = re.compile(r"# @package ([A-Za-z]\w*(?:\.[A-Za-z]\w*)*)\n", re.ASCII)
 _ELSEWHERE = re.compile(r"override /(\w+)@_global_\.\1")
+_WITHIN = re.compile(r"/(\w+)")
 SELF, MISSING = "_self_", "???"
 IN_A_CIRCLE = "defaults: a file builds on itself, or on what builds on it"
 
@@ -78,13 +80,14 @@ class _File(NamedTuple):
     """A file of a group.
 
     Attributes:
-        others: of its group that it builds on, and `SELF`, in the order in which they are merged.
+        others: what it builds on, of its own group ("") or of another that is about a part of it,
+            and `SELF`, in the order in which they are merged.
         asks: group -> choice, for other groups.
         package: the key that it is about, if not its group.
     """
 
     own: dict[str, Any]
-    others: tuple[str, ...]
+    others: tuple[tuple[str, str], ...]
     asks: Mapping[str, str]
     package: str
 
@@ -127,8 +130,8 @@ def _asks(group: str, name: str) -> list[tuple[str, str]]:
     """What a file asks of other groups, before what those ask that it builds on."""
     file = _file(group, name)
     found = list(file.asks.items())
-    for other in reversed(file.others):
-        found += _asks(group, other) if other != SELF else []
+    for other, choice in reversed(file.others):
+        found += _asks(other or group, choice) if choice != SELF else []
     return found
 
 
@@ -140,10 +143,17 @@ def _placed(group: str, name: str) -> Any:
 def _content(group: str, name: str) -> dict[str, Any]:
     file = _file(group, name)
     data: dict[str, Any] = {}
-    for other in file.others:
-        if other != SELF and _file(group, other).package != file.package:
+    for other, choice in file.others:
+        if choice == SELF:
+            data = _merged(data, file.own)
+            continue
+        about = plain.way(file.package or group)
+        place = plain.way(_file(other or group, choice).package or other or group)
+        if place[: len(about)] != about or bool(other) != (place != about):
             raise _NotPlainError
-        data = _merged(data, file.own if other == SELF else _content(group, other))
+        below = place[len(about) :]
+        inner = _content(other or group, choice)
+        data = _merged(data, plain.put({}, below, inner) if below else inner)
     return data
 
 
@@ -160,25 +170,30 @@ def _file(group: str, name: str) -> _File:
 def _read(path: Path, changed: int) -> _File:
     """A file as it was at some time."""
     data = content(path)
-    others, asks = [], {}
+    others: list[tuple[str, str]] = []
+    asks: dict[str, str] = {}
     defaults = data.get("defaults", [SELF])
     for entry in defaults if isinstance(defaults, list) else [None]:
         if isinstance(entry, str) and entry.isidentifier():
-            others.append(entry)
+            others.append(("", entry))
             continue
         if not isinstance(entry, dict) or len(entry) != 1:
             raise _NotPlainError
         ((key, name),) = entry.items()
-        match = _ELSEWHERE.fullmatch(key)
-        if not match or not isinstance(name, str):
+        if not isinstance(name, str):
             raise _NotPlainError
-        asks[match[1]] = name
+        if match := _ELSEWHERE.fullmatch(key):
+            asks[match[1]] = name
+        elif match := _WITHIN.fullmatch(key):
+            others.append((match[1], name))
+        else:
+            raise _NotPlainError
     own = {key: value for key, value in data.items() if key != "defaults"}
     text = files.text(path, documents.LARGEST, linked=True)
     package = _PACKAGE.match(text)
     odd = text.count("@package") > (1 if package else 0)
-    others = others or [SELF]
-    if odd or SELF not in others or any(map(_read_otherwise, plain.leaves(own))):
+    others = others or [("", SELF)]
+    if odd or ("", SELF) not in others or any(map(_read_otherwise, plain.leaves(own))):
         raise _NotPlainError
     return _File(own, tuple(others), asks, package[1] if package else "")
 

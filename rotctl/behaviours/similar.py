@@ -19,7 +19,7 @@ from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.levelling import LevellingSettings
 from rotctl.behaviours.pacing import PaceSettings
-from rotctl.behaviours.pivoting import Bring
+from rotctl.behaviours.pivoting import Bring, Escapes
 from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
@@ -106,6 +106,7 @@ UNITS: Units = {
     Above: all_of(length, "ahead", "height", "most"),
     Opposite: all_of(length, "ahead", "height"),
     Low: all_of(length, "height"),
+    Escapes: all_of(length, "point", "distance"),
     Near: all_of(speed, "speed") | all_of(rate, "turning"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LevellingSettings: all_of(time, "interval"),
