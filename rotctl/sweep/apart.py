@@ -37,12 +37,13 @@ def apart(task: Callable[[T], R], item: T) -> R | Failure | Death:
     """The result of a task that is carried out in another process.
 
     Args:
-        task, item: picklable, as an engine wants them.
+        task, item: picklable, as an engine wants them; what pickle says of others is raised.
     """
     ours, theirs = Pipe()
     here = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    command = [sys.executable, "-m", __spec__.name, str(theirs.fileno())]
-    with ours, Popen(command, pass_fds=[theirs.fileno()], env=here) as child:
+    # -P: else a module of the folder that the worker is in would go before ours.
+    command = [sys.executable, "-P", "-m", __spec__.name, str(theirs.fileno())]
+    with Popen(command, pass_fds=[theirs.fileno()], env=here) as child, ours:
         theirs.close()  # else the pipe would not end with the child
         answer: Any
         try:
@@ -50,7 +51,6 @@ def apart(task: Callable[[T], R], item: T) -> R | Failure | Death:
             answer = pickle.loads(ours.recv_bytes())
         except (EOFError, OSError):
             answer = Death(ending(child.wait()))
-        ours.close()  # and the child does not wait for more
     return answer
 
 

@@ -210,7 +210,7 @@ class DaskEngine:
                 elif result is None:
                     results = [Failure("the workers that tried it died")]
                 else:
-                    results = [died(result.ending, deaths)]
+                    results = [died(result.ending, deaths, least=True)]  # Dask tells of one
             else:
                 results, seconds = result
                 pace = pace.after(len(results), seconds)

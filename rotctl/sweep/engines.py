@@ -80,11 +80,13 @@ def ending(code: int | None) -> str:
     return f"exit code {code}"
 
 
-def died(how: str, tries: int) -> Failure:
+def died(how: str, tries: int, *, least: bool = False) -> Failure:
     """What to say of a task that was tried so often and had a process each time.
 
     Args:
         how: the last of them ended.
+        least: that it was so often at least.
     """
-    counted = "" if tries == 1 else f", the last of {tries} times"
+    often = f"at least {tries}" if least else tries
+    counted = "" if tries == 1 else f", the last of {often} times"
     return Failure(f"its worker died: {how}{counted}")
