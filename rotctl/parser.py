@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from rotctl import __version__
-from rotctl.commands import clips, completion, folders, logs, runs, studies
+from rotctl.commands import clips, completion, folders, logs, runs, searches, studies
 from rotctl.errors import bounded
 from rotctl.meant import instead, meant
 from rotctl.wording import one_line
@@ -54,7 +54,7 @@ COMMANDS = (
     ),
     *(logs.add_inspect, logs.add_verify, runs.add_bench),
     *(studies.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
-    *(studies.add_tune, clips.add_import, clips.add_author, clips.add_preview),
+    *(searches.add_tune, clips.add_import, clips.add_author, clips.add_preview),
     completion.add_completion,
 )
 NO_LOG = "an unfinished run leaves no log"

@@ -9,6 +9,7 @@ from captures import adult, bvh_text, in_order
 from scipy.spatial.transform import Rotation
 
 from rotctl.cli import main
+from rotctl.clip_wording import import_warnings
 from rotctl.errors import InputError
 from rotctl.motion.capture import Y_UP_FACING_Z
 from rotctl.motion.glance import turning
@@ -18,7 +19,6 @@ from rotctl.motion.naming import find_roles
 from rotctl.motion.reading import Wishes, read_capture
 from rotctl.motion.retarget import retarget
 from rotctl.motion.smpl import _SKELETON
-from rotctl.wording import import_warnings
 
 CLOSE = 0.02  # [rad]
 

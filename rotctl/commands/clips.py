@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl.bars import bar, following
+from rotctl.clip_wording import import_warnings, imported
 from rotctl.commands.arguments import Commands, folder_name, role_and_name
 from rotctl.errors import InputError
-from rotctl.wording import import_warnings, imported, printable
+from rotctl.wording import printable
 
 if TYPE_CHECKING:
     from rotctl.mechanics.model import Model

@@ -1,4 +1,4 @@
-"""Many runs: `sweep`, `summarise`, `report`, `tune`."""
+"""Many runs: `sweep`, `judge`, `summarise`, `report`."""
 
 import argparse
 import sys
@@ -81,7 +81,7 @@ def sweep(arguments: argparse.Namespace) -> int:
         with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
             runs = planned(bar)
         if arguments.dry_run:
-            print(without_running(runs, out, engine.workers, kept))
+            print(without_running(runs, out, engine.workers, kept, count(matrix)))
             return 0
         with locked(out):
             if experiment:
@@ -243,61 +243,3 @@ def report(arguments: argparse.Namespace) -> int:
     found = against.changes(old, claims)
     print(found.text)
     return 1 if found.worse else 0
-
-
-def add_tune(commands: Commands) -> None:
-    """Add `tune`."""
-    command = commands.add_parser(
-        "tune",
-        help="search for poses or gains over many starts",
-        description="Search what conf/tune/NAME.yaml declares, in whole generations, each on "
-        "fresh training starts. The same command again goes on where the last one ended.",
-    )
-    command.add_argument("name", metavar="NAME", help="a space in conf/tune/, or a .yaml file")
-    command.add_argument(
-        "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
-    )
-    command.add_argument(
-        "--out",
-        type=folder_name,
-        required=True,
-        metavar="DIR",
-        help="holds the search and its result",
-    )
-    budget = command.add_mutually_exclusive_group()
-    budget.add_argument("--trials", type=int, metavar="N", help="candidates in all [the space's]")
-    budget.add_argument("--minutes", type=float, metavar="M", help="time for this call instead")
-    command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
-    command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
-    command.add_argument("--sampler", choices=("cmaes", "tpe"), help="instead of the space's")
-    command.add_argument("--seed", type=int, default=0, metavar="S", help="of the search [0]")
-    command.set_defaults(command=tune, interrupted="the same command does what is left")
-
-
-def tune(arguments: argparse.Namespace) -> int:
-    """Search for config values."""
-    from contextlib import closing
-
-    from rotctl.sweep.workers import make_engine
-    from rotctl.tune import result
-    from rotctl.tune.search import Watch, prepare, tune
-
-    search, budget = prepare(
-        arguments.name,
-        arguments.overrides,
-        arguments.seed,
-        arguments.sampler,
-        arguments.trials,
-        arguments.minutes,
-    )
-    with (
-        closing(make_engine(arguments.jobs, arguments.scheduler)) as engine,
-        bar(search.space.name, "run") as shown,
-    ):
-        watch = Watch(lambda text: shown.write(text, file=sys.stderr), shown.update)
-        outcome = tune(search, arguments.out, budget, engine, watch)
-    written = result.write(outcome, arguments.out)
-    print(result.comparison(outcome), *written, sep="\n")
-    if result.is_better(outcome):
-        print(result.how_to_judge(outcome, written, arguments.out))
-    return 0
