@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import Any
 
-from rotctl import plain
-from rotctl.checked import brief
+from rotctl import choosing, labels, plain
+from rotctl.checked import brief, clip
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
 from rotctl.listing import usual
@@ -85,7 +85,7 @@ def told(complaint: str, data: dict[str, Any]) -> str:
     said = plain.find(data, ("behaviour", "parts", int(match[1]), SAID)) if match else None
     if not match or not isinstance(said, str):
         return complaint
-    return f"behaviour.parts: {said!r}: {complaint[match.end() :]}"
+    return f"behaviour.parts: {clip(said)!r}: {complaint[match.end() :]}"
 
 
 def _require_few(said: int, between: int) -> None:
@@ -132,6 +132,7 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
             raise InputError(f"{where}: {brief(word)}: a part may say {', '.join(ABOUT)}")
     try:
         made = compose(words)
+        labels.require_own_in_files(choosing.chosen(words), made)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     for group in GROUPS:

@@ -74,6 +74,8 @@ def keys(shape: Any, way: Sequence[int | str] = ()) -> list[str]:
     """
     for part in way:
         shape = _inner(shape, part)
+    if get_origin(shape) in (Union, UnionType):  # with None, else the way would have a tag
+        shape = next(each for each in get_args(shape) if each is not NoneType)
     return list(shape.__dataclass_fields__) if is_dataclass(shape) else []
 
 
@@ -138,11 +140,19 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
     message = _WORDS.get(kind, "").format(**limits) or first["msg"]
     message = message.removeprefix("Value error, ")
     message = re.sub(r"^Input should be", "must be", message)
+    if kind == "value_error" and where and _begins_with_key(message, found):
+        return f"{where}.{message}"
     plain = not isinstance(found, dict | list | tuple)
     # A longer one is looked up in the file; a check of our own says what it is about.
     shown = plain or (kind != "value_error" and len(str(found)) < LONGEST)
     place_and_value = f"{where}={brief(found)}" if shown else where
     return f"{place_and_value}: {message[:1].lower()}{message[1:]}" if where else message
+
+
+def _begins_with_key(message: str, found: Any) -> bool:
+    """Whether a check of our own says which of the keys there it is about, `ways[0].parts: `."""
+    match = re.match(r"(\w+)(?:\[\d+\]|\.\w+)*: ", message)
+    return match is not None and isinstance(found, dict) and match[1] in found
 
 
 def unknown_key(key: str, where: str, valid: Sequence[str]) -> str:

@@ -15,7 +15,14 @@ from typing import Any, NamedTuple
 
 from rotctl import documents, files, plain
 from rotctl.errors import InputError
-from rotctl.listing import choices, conf_dir, content, named_file, require_plain
+from rotctl.listing import (
+    choices,
+    conf_dir,
+    content,
+    named_file,
+    require_plain,
+    shipped_files,
+)
 
 _KEY = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*", re.ASCII)
 _INTEGER = re.compile(r"[+-]?(?:0|[1-9][0-9]{0,17})")
@@ -54,6 +61,11 @@ def simple(override: str) -> Assignment | None:
     if _WORD.fullmatch(text) and text.lower() not in _NO_WORDS:
         return Assignment(key, text)
     return None
+
+
+def chosen(overrides: Iterable[str]) -> list[Assignment]:
+    """The choices among overrides."""
+    return [one for one in map(simple, overrides) if one and choices(one.key)]
 
 
 def composed(chosen: Iterable[Assignment]) -> dict[str, Any] | None:
@@ -123,7 +135,8 @@ def _composed(chosen: Sequence[Assignment]) -> dict[str, Any]:
 
 def package(group: str) -> str:
     """The key that the choices of a group are about: its own name, if they say no other."""
-    return _file(group, choices(group)[0]).package or group
+    first = min(shipped_files(group).values())  # one of the user's may be wrong, and is another's
+    return _read(first, first.stat().st_mtime_ns).package or group
 
 
 def _asks(group: str, name: str) -> list[tuple[str, str]]:

@@ -34,7 +34,7 @@ def load(overrides: list[str]) -> Config:
         InputError: one line that names the bad value and the valid choices or range.
     """
     data = composed(overrides)
-    labels.require_own_in_files(_choices(overrides), data)
+    labels.require_own_in_files(choosing.chosen(overrides), data)
     try:
         return check(data)
     except InputError as error:
@@ -47,7 +47,7 @@ def _own_file(overrides: list[str], complaint: str) -> str:
 
     It is at fault if the choices among the overrides are wrong already, by themselves.
     """
-    chosen = _choices(overrides)
+    chosen = choosing.chosen(overrides)
     mine = {one.key: named_file(one.key, one.value) for one in chosen}
     mine = {group: path for group, path in mine.items() if is_own(path)}
     if not mine:
@@ -59,10 +59,6 @@ def _own_file(overrides: list[str], complaint: str) -> str:
             named = [path for group, path in mine.items() if f"{group}." in complaint]
             return f"{next(iter(named or mine.values()))}: "
     return ""
-
-
-def _choices(overrides: list[str]) -> list[Assignment]:
-    return [one for one in map(simple, overrides) if one and choices(one.key)]
 
 
 def recorded(log: RunLog) -> Config:
@@ -95,7 +91,7 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     body = own_body.named(overrides)
     if body is None:
         return chained.composed(_composed(overrides), _composed, overrides)
-    labels.require_own((f"{own_body.GROUP}.{key}", value) for key, value in body.changes)
+    labels.require_own(((f"{own_body.GROUP}.{key}", value) for key, value in body.changes), dict)
     data = {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
     return chained.composed(data, _composed, body.others)
 
@@ -103,14 +99,15 @@ def composed(overrides: list[str]) -> dict[str, Any]:
 def _composed(overrides: list[str]) -> dict[str, Any]:
     quick = [one for one in map(simple, overrides) if one]
     if len(quick) == len(overrides):
-        labels.require_own(quick)
+        labels.require_own(quick, lambda: _of_choices(overrides))
         data = _set_on_choices(quick)
         if data is not None:
             return data
     from rotctl.overrides import assigned, is_choice, single
 
     found = [single(override) for override in overrides]
-    labels.require_own((str(o.key_or_group), o.value()) for o in found if not o.is_delete())
+    every = [(str(o.key_or_group), o.value()) for o in found if not o.is_delete()]
+    labels.require_own(every, lambda: _of_choices(overrides))
     require_plain([(str(o.key_or_group), str(o.value())) for o in found if is_choice(o)])
     quick = [one for one in map(assigned, found) if one]
     if len(quick) == len(overrides):
@@ -118,6 +115,14 @@ def _composed(overrides: list[str]) -> dict[str, Any]:
         if data is not None:
             return data
     return _by_hydra(overrides, found)
+
+
+def _of_choices(overrides: list[str]) -> dict[str, Any]:
+    """What the choices among them make by themselves; nothing if they make no config."""
+    try:
+        return _chosen(tuple(choosing.chosen(overrides)), folders(), _stamp(folders()))
+    except InputError:
+        return {}
 
 
 def _set_on_choices(found: list[Assignment]) -> dict[str, Any] | None:

@@ -8,7 +8,7 @@ from rotctl.behaviours.placing import Watch
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.errors import InputError
-from rotctl.listing import choices, content, named_file
+from rotctl.listing import content, shipped_files
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
@@ -86,9 +86,9 @@ def _require_judged(
 
 
 def _named(kinds: Sequence[str]) -> str:
-    """The first choice of criteria that says that it is of one of some kinds."""
-    told = {name: content(named_file("criteria", name)) for name in choices("criteria")}
-    return next(name for name, data in told.items() if data.get("kind") in kinds)
+    """The first of the criteria that come with rotctl that says it is of one of some kinds."""
+    told = {name: content(path) for name, path in shipped_files("criteria").items()}
+    return next((name for name, data in told.items() if data.get("kind") in kinds), "NAME")
 
 
 def _require_watched(behaviour: BehaviourSettings, criteria: DiveCriteria, key: str) -> None:

@@ -1,19 +1,21 @@
 """What a run is called: each choice has a `name`, which says what it is and makes nothing of it."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
+from rotctl import plain
 from rotctl.errors import InputError
 from rotctl.listing import choices, is_own, named_file
 
 NAME = "name"
 
 
-def require_own(assigned: Iterable[tuple[str, Any]]) -> None:
+def require_own(assigned: Iterable[tuple[str, Any]], chosen: Callable[[], Any]) -> None:
     """See that no choice is given the name of another one of its group.
 
     Args:
         assigned: keys and the values that they are set to, choices among them.
+        chosen: makes the data of a config of the choices alone, whose names they may keep.
 
     Raises:
         InputError: one is; one line that names it and what was probably meant.
@@ -21,7 +23,8 @@ def require_own(assigned: Iterable[tuple[str, Any]]) -> None:
     every = [(key.lstrip("+"), value) for key, value in assigned]
     for key, value in every:
         group, _, rest = key.partition(".")
-        if rest == NAME and value in choices(group) and (group, value) not in every:
+        taken = rest == NAME and value in choices(group) and (group, value) not in every
+        if taken and plain.find(chosen(), (group, NAME)) != value:
             raise InputError(
                 f"{key}={value}: would only call it so, and that is another {group}; "
                 f"write {group}={value}, or a name of your own"

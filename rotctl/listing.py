@@ -88,14 +88,22 @@ def named_files(folder: str) -> dict[str, Path]:
     Args:
         folder: a group, or `motion`, `tune`, `experiments`.
     """
-    first = conf_dir().parent if folder == EXPERIMENTS else conf_dir()
-    places = [place / folder for place in (first, own_dir()) if place]
-    found: dict[str, Path] = {}
-    for place in places:
-        for path in sorted(place.glob("*.yaml")):
-            if not path.name.startswith("."):  # editors keep locks and copies so
-                found.setdefault(path.stem, path)
+    mine = own_dir()
+    found = shipped_files(folder)
+    for name, path in _files(mine / folder).items() if mine else ():
+        found.setdefault(name, path)
     return found
+
+
+def shipped_files(folder: str) -> dict[str, Path]:
+    """As `named_files`, of what comes with rotctl alone, and is never wrong."""
+    place = conf_dir().parent if folder == EXPERIMENTS else conf_dir()
+    return _files(place / folder)
+
+
+def _files(place: Path) -> dict[str, Path]:
+    paths = sorted(place.glob("*.yaml"))
+    return {path.stem: path for path in paths if not path.name.startswith(".")}  # editors' locks
 
 
 def named_file(folder: str, name: str) -> Path:

@@ -244,7 +244,8 @@ def test_a_limb_is_set_down_where_the_body_will_come_to_rest(standing):
     ):
         row = np.zeros(1, TASK)[0]
         row["body"], row["weight"] = scene.model.mj.body("forearm_l").id, 1.0
-        aim = Place("place", "forearm_r", distance, (30.0, 90.0), 0.03, 0.0, room, 0.07)
+        short = 0.07 if room else 0.0
+        aim = Place("place", "forearm_r", distance, (30.0, 90.0), 0.03, 0.0, room, short)
         aim.fill(row, "point", scene)
         assert (row["target"][:3] - hand) @ along == pytest.approx(wanted, abs=1e-9)
         assert row["target"][:3] @ across == pytest.approx(momentum.com @ across, abs=1e-9)

@@ -136,7 +136,7 @@ def test_what_was_said_of_a_part_does_not_act():
          "criteria, finish"),
         (["stand character={kind:mjcf,file:/etc/passwd}"], "behaviour.parts[0]: "),
         (["stand 'x"], "behaviour.parts[0]=\"stand 'x\": No closing quotation"),
-        (["forward_roll", "stand"], "behaviour: parts: 'forward_roll': forward_roll rolls on, and "
+        (["forward_roll", "stand"], "behaviour.parts: 'forward_roll': forward_roll rolls on, and "
          "others follow it; 'behaviour=NAME +finish=stand' comes to an end"),
         (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20 in all"),
         (["stand"] * 11, "behaviour.parts: has 11 parts and behaviour.between adds 10, valid: up "
@@ -147,6 +147,8 @@ def test_what_was_said_of_a_part_does_not_act():
          "behaviour, it must have one"),
         (["back_flip behaviour.stages=7", "stand"], "behaviour.parts: 'back_flip "
          "behaviour.stages=7': behaviour.stages=7: must be a list, in brackets"),
+        (["back_flip behaviour.heading=" + "9" * 2000, "stand"],
+         "behaviour.parts: 'back_flip behaviour.heading=" + "9" * 29 + "...': behaviour.heading="),
         (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts: \"back_flip "
          "'behaviour.stages=[5]'\": behaviour.stages[0]=5: must be keys with values"),
         (["incline +finish=stand", "stand"], 'behaviour.parts[0]="incline +finish=stand": is for '

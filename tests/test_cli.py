@@ -391,12 +391,15 @@ def test_the_config_of_a_run_is_shown(cli, made, tmp_path, monkeypatch):
 
 
 def test_an_id_of_a_run_elsewhere_is_told_how_to_name_it(cli):
-    assert cli("verify", "0123456789ab") == (
-        2,
-        "",
-        "rotctl: 0123456789ab: no such file, and no run of that id in runs; write the folder that "
-        "it is in before it, as in sweeps/mine/0123456789ab\n",
-    )
+    for word in ("verify", "show"):
+        assert cli(word, "0123456789ab") == (
+            2,
+            "",
+            "rotctl: 0123456789ab: no such file, and no run of that id in runs; write the folder "
+            "that it is in before it, as in sweeps/mine/0123456789ab\n",
+        )
+    code, _, stderr = cli("show", "runs/aaaaaaaaaaaa")
+    assert (code, stderr) == (2, "rotctl: runs/aaaaaaaaaaaa: no such file\n")
 
 
 def test_a_part_of_a_config_is_shown_alone(cli):

@@ -560,3 +560,41 @@ def test_an_order_names_bodies_that_are_there():
     for order, said in (("[[nose]]", "unknown body 'nose'"), ("[]", "too few values")):
         with pytest.raises(InputError, match=said):
             build(load(["behaviour=back_handspring", f"criteria.order={order}"]))
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (
+            ["behaviour=stand_step", "+behaviour.tasks.swing.aim.aside=0.1"],
+            "behaviour.tasks.swing.aim: aside=0.1: acts on nothing, the foot is chosen by away; "
+            "give aside=0 or away=0",
+        ),
+        (
+            ["behaviour=stand_step", "+behaviour.tasks.swing.aim.narrow=0.5"],
+            "behaviour.tasks.swing.aim: narrow=0.5: acts on nothing, the foot is chosen by away; "
+            "give narrow=0 or away=0",
+        ),
+        (
+            ["behaviour=stand_step", "behaviour.tasks.swing.aim.gather=0.1"],
+            "behaviour.tasks.swing.aim: gather=0.1: must be 0 or more than width=0.16, which it "
+            "comes to",
+        ),
+        (
+            ["behaviour=cartwheel", "behaviour.stages.6.tasks.step_down.aim.room=0"],
+            "behaviour.stages[6].tasks.step_down.aim: short=0.08: acts on nothing without room; "
+            "give short=0",
+        ),
+    ],
+)
+def test_a_setting_that_would_act_on_nothing_is_refused(overrides, message):
+    with pytest.raises(InputError) as error:
+        load(overrides)
+    assert str(error.value) == message
+
+
+@pytest.mark.parametrize("sign", ["", "+"])
+def test_keys_of_what_may_be_null_are_listed(sign):
+    with pytest.raises(InputError) as error:
+        load(["behaviour=decline_crouch", f"{sign}behaviour.pace.halt=1"])
+    assert "valid keys under behaviour.pace: keep, travel, own, " in str(error.value)

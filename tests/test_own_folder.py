@@ -15,6 +15,7 @@ from rotctl.listing import conf_dir, named_file
 from rotctl.motion import load_clip
 from rotctl.own_folder import kinds, make
 from rotctl.results import experiments
+from rotctl.scenario import build
 from rotctl.tune.space import load_space
 
 
@@ -278,3 +279,24 @@ def test_a_file_that_nobody_can_choose_is_told(here, cli):
     (here / "conf" / "start" / "mine.yaml").rename(here / "conf" / "start" / "true.yaml")
     assert "cannot be used: YAML takes true for something else" in cli("list")[1]
     assert "true" not in cli("show", "start=true")[2].partition("valid: ")[2]
+
+
+@pytest.mark.parametrize(
+    ("group", "overrides", "message"),
+    [
+        ("criteria", ["behaviour=stand", "criteria=rolling"], "such as criteria=cartwheel"),
+        ("finish", ["finish.after=1"], "unknown key 'finish.after'; what +finish=CHOICE adds is "),
+        ("start", ["behaviour=log_roll", "start=falling"], "; valid: "),
+    ],
+)
+@pytest.mark.parametrize("text", ["kind: [", "defaults: [nobody]\n"])
+def test_a_file_that_is_wrong_is_no_matter_to_who_does_not_choose_it(
+    here, group, overrides, message, text
+):
+    path = here / "conf" / group / "aa.yaml"
+    path.parent.mkdir(parents=True)
+    path.write_text(text)
+    with listing.own(here / "conf"), pytest.raises(InputError) as error:
+        build(load([*overrides, "seed=1"]))
+    assert message in str(error.value)
+    assert "aa" not in str(error.value)

@@ -87,7 +87,7 @@ def test_a_reverse_dive_is_none():
 @pytest.mark.parametrize("behaviour", ["dive_forward", "dive_backward"])
 def test_a_dive_needs_water(behaviour, terrain):
     assert refusal(f"behaviour={behaviour}", f"terrain={terrain}") == (
-        "behaviour.stages.until: this behaviour dives, and here is no water; choose terrain=pool"
+        "behaviour.stages.4.until: this behaviour dives, and here is no water; choose terrain=pool"
     )
 
 

@@ -39,7 +39,7 @@ def rocked():
 
 @pytest.mark.parametrize("start", ["supine", "side"])
 def test_of_four_starts_two_stand_within_four_seconds(start):
-    """Of all, nine of ten do from the back and from a side: that one does at most is 1 in 250."""
+    """Of a hundred 86 do from a side, more from the back: at most one does once in a hundred."""
     made = (
         simulated(load(["behaviour=rock_up", f"start={start}", f"seed={seed}", "duration=5"]))
         for seed in (2000, 2003, 2001, 2004)

@@ -205,10 +205,7 @@ CASES = {
             "disturbance.direction=60",
         ),
         r"behaviour\.tasks\.(balance|swing)\..*",
-        {
-            r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together",
-            r"behaviour\.tasks\.swing\.aim\.(aside|narrow)": "of who goes by sides: test_balance",
-        },
+        {r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together"},
         seconds=0.8,
     ),
     "turning onto the front": Case(
@@ -250,7 +247,6 @@ CASES = {
     "hands of a cartwheel": Case(
         ("behaviour=cartwheel",),
         r"behaviour\.stages\.(2\.until\.distance|3\.tasks\.(carry|reach)\.aim\.(?!law).*)",
-        {r".*\.reach\.aim\.short": "of places with room, as its first foot's"},
         seconds=2.0,
     ),
     "first foot of a cartwheel": Case(

@@ -96,6 +96,8 @@ def test_points_that_are_one_run_are_told(cli, tmp_path):
         "6 points are 1 run: some are the same, or set a key that a later one sets again"
     )
     assert second == f"1 run to do in {tmp_path}; on 1 local process"
+    told, *_ = cli(*arguments, "--dry-run")[1].splitlines()
+    assert told == first
     assert stdout.startswith("1 run: 1 succeeded, 0 did not, 0 failed to run\n")
 
 

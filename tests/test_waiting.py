@@ -35,8 +35,11 @@ def test_it_comes_as_far_as_it_waits_and_other_joints_stay(model):
     assert settled(model, angles, 1.0) == pytest.approx(whole)
 
 
-def test_no_joint_goes_beyond_its_stops(model):
-    assert settled(model, {"knee": 9.0}, 1.0) == pytest.approx({"knee_l": 2.7, "knee_r": 2.7})
+def test_an_angle_beyond_a_joints_stops_is_refused():
+    """Such as one in degrees."""
+    with pytest.raises(InputError) as error:
+        build(load(["behaviour=decline_crouch", "behaviour.pace.pose.knee=150"]))
+    assert str(error.value) == "behaviour.pace.pose.knee=150: this joint goes from -0.02 to 2.7 rad"
 
 
 def test_an_unknown_joint_is_named():

@@ -11,6 +11,7 @@ from rotctl.behaviours.chaining import Chain, Part, RestSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.behaviours.ways import Way, Ways
+from rotctl.checked import clip
 from rotctl.control import ControllerSettings
 from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -50,7 +51,9 @@ class PartSettings:
         Args:
             number: of the part.
         """
-        return f"behaviour.parts: {self.said!r}" if self.said else f"behaviour.parts[{number}]"
+        return (
+            f"behaviour.parts: {clip(self.said)!r}" if self.said else f"behaviour.parts[{number}]"
+        )
 
     @property
     def ends(self) -> bool:

@@ -62,7 +62,8 @@ class Stepping:
         away: of the two feet the one swings whose step leaves the capture point less far outside
             them, a metre that the point runs away meanwhile counted as so many of those [-]; 0 goes
             by `aside` and `narrow` in place of that.
-        gather: who has come to rest with feet further apart brings them together [m]; 0 lets them.
+        gather: who has come to rest with feet further apart brings them together [m], more than
+            `width`; 0 lets them.
     """
 
     law: Literal["step"]
@@ -81,6 +82,19 @@ class Stepping:
     narrow: NonNegative = 0.0
     away: NonNegative = 0.0
     gather: NonNegative = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("aside", "narrow"):
+            if self.away and getattr(self, name):
+                raise ValueError(
+                    f"{name}={getattr(self, name):g}: acts on nothing, the foot is chosen by away; "
+                    f"give {name}=0 or away=0"
+                )
+        if 0.0 < self.gather <= self.width:
+            raise ValueError(
+                f"gather={self.gather:g}: must be 0 or more than width={self.width:g}, which it "
+                "comes to"
+            )
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where the aim stands."""

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from rotctl.mechanics.model import Model
+from rotctl.motion import make_pose
 from rotctl.rotations import Array
 
 KEY = "behaviour.pace.pose"
@@ -25,13 +26,13 @@ class Waiting:
         """Of a model, by the names of joints; one without a side is both.
 
         Raises:
-            InputError: there is no such joint.
+            InputError: there is no such joint, or an angle is none of that joint.
         """
-        wanted = model.posed(angles, KEY, 1)[0]
+        wanted = make_pose(model, angles, KEY)
         self.angles = np.full(len(wanted), np.nan)
         for joint in angles:
             motors = model.motors(joint, KEY)
-            self.angles[motors] = np.clip(wanted[motors], *model.joint_range[motors].T)
+            self.angles[motors] = wanted[motors]
 
     def settled(self, pose: Array, waits: float) -> Array:
         """A pose (nu,) of one that waits so much [-]: at 1 it is the waiting one's."""

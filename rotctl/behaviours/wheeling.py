@@ -164,6 +164,10 @@ class Place:
     room: NonNegative = 0.0
     short: Finite = 0.0
 
+    def __post_init__(self) -> None:
+        if self.short and not self.room:
+            raise ValueError(f"short={self.short:g}: acts on nothing without room; give short=0")
+
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where the aim stands."""
         body_id(model.mj, self.beyond, f"{key}.beyond")

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from rotctl.errors import InputError
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
-_ID = re.compile("[0-9a-f]{12}")
+IS_ID = re.compile("[0-9a-f]{12}")
 RUNS = Path("runs")  # where runs go unless somebody says otherwise
 
 # Where a command is added; argparse has no public name for it.
@@ -43,7 +43,7 @@ def log_file(path: Path) -> Path:
     """
     path = run_folder(path)
     if not os.path.isdir(path):
-        if _ID.fullmatch(str(path)) and not os.path.lexists(path):
+        if IS_ID.fullmatch(str(path)) and not os.path.lexists(path):
             raise InputError(
                 f"{path}: no such file, and no run of that id in {RUNS}; write the folder that it "
                 f"is in before it, as in sweeps/mine/{path}"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rotctl.bars import bar
 from rotctl.commands.arguments import (
+    IS_ID,
     LOG_NAME,
     OVERRIDES_HELP,
     RUNS,
@@ -218,7 +219,8 @@ def _only_run(overrides: list[str]) -> Path | None:
     if len(overrides) != 1 or "=" in overrides[0] or overrides[0].startswith(MARK):
         return None
     path = run_folder(Path(overrides[0]))
-    return path if path.suffix == ".h5" or os.path.lexists(path / LOG_NAME) else None
+    named = path.suffix == ".h5" or IS_ID.fullmatch(path.name)
+    return path if named or os.path.lexists(path / LOG_NAME) else None
 
 
 def add_bench(commands: Commands) -> None:

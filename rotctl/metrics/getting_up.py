@@ -14,7 +14,7 @@ from rotctl.settings import STRICT, Positive
 
 COLUMNS = (
     Column("up_from", "On its feet alone, upright and high enough from", "s"),
-    Column("attempts", "Times that it began to get up", ""),
+    Column("attempts", "Times that it began to get up, at least", ""),
     Column("lowest_in_the_end", "Lowest of the centre of mass in the end", "m"),
 )
 
@@ -49,7 +49,7 @@ class GettingUpMetrics:
     """What a log says of getting up; see `COLUMNS`. NaN where it has no rows, or never is up."""
 
     up_from: float
-    attempts: int
+    attempts: int  # at least: a way that begins again in its first stage does not show in a log
     lowest_in_the_end: float
     lean_end: float
     speed_end: float

@@ -12,7 +12,6 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Behaviour, Placement
 from rotctl.errors import InputError
 from rotctl.linear import product
-from rotctl.listing import choices, content, named_file
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
 from rotctl.rotations import Array, advance, cross, dot
@@ -23,8 +22,8 @@ from rotctl.simulation.aloft import AloftSettings
 from rotctl.simulation.clearance import clearance
 from rotctl.simulation.falling import FallingSettings
 from rotctl.simulation.known import Known, StateSettings, pitch
+from rotctl.simulation.suited import suited
 
-GROUP = "start"
 SAME = 1e-3  # [-] of a mass, in a file that somebody may round
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
@@ -134,7 +133,7 @@ def draw(
         does = "falls onto the feet of who turns" if settings.falling else "turns"
         raise InputError(
             f"start={settings.name} {does} about the left axis, and "
-            f"behaviour.roll_about={roll_about}; {_valid(roll_about)}"
+            f"behaviour.roll_about={roll_about}; {suited(roll_about)}"
         )
     if settings.falling:
         return _falling(settings, settings.falling, model, start, generator)
@@ -147,27 +146,12 @@ def draw(
     if roll_about not in settings.postures:
         raise InputError(
             f"start={settings.name} has no posture for behaviour.roll_about={roll_about}, only for "
-            f"{', '.join(settings.postures)}; {_valid(roll_about)}"
+            f"{', '.join(settings.postures)}; {suited(roll_about)}"
         )
     posture = settings.postures[roll_about]
     pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
     placed = replace(start, pitch=start.pitch + posture.pitch)
     return _scattered(settings, model, placed, pose, generator)
-
-
-def _valid(roll_about: str) -> str:
-    """The starts that there are for a roll about an axis."""
-    fit = []
-    for name in choices(GROUP):
-        try:
-            data = content(named_file(GROUP, name))
-        except InputError:  # a file of the user's that is wrong is told where it is chosen
-            continue
-        postures = data.get("postures")
-        elsewhere = roll_about != "left" and ("falling" in data or "aloft" in data)
-        if not elsewhere and (not isinstance(postures, dict) or roll_about in postures):
-            fit.append(name)
-    return f"valid: {', '.join(fit)}"
 
 
 def _falling(

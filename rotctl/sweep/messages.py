@@ -19,8 +19,13 @@ FEW = 5  # runs of a dry run that are listed
 TRIAL = 2.0  # [s] of simulated time, to estimate the whole
 
 
-def without_running(runs: list[Planned], folder: Path, workers: int, keep: Keep) -> str:
+def without_running(
+    runs: list[Planned], folder: Path, workers: int, keep: Keep, points: int
+) -> str:
     """What there is to do, with an estimate of the time from a short trial of the first run.
+
+    Args:
+        points: of the grid.
 
     Raises:
         InputError: the first run cannot be simulated.
@@ -32,7 +37,8 @@ def without_running(runs: list[Planned], folder: Path, workers: int, keep: Keep)
         if not os.path.lexists(folder / run.run_id / LOG_NAME)
         and (run.run_id not in listed or not suffices(listed[run.run_id], wish(run.run_id)))
     ]
-    lines = [f"{_many(len(runs))}, {len(left)} of them not yet in {folder}"]
+    lines = _fewer(points, len(runs))
+    lines.append(f"{_many(len(runs))}, {len(left)} of them not yet in {folder}")
     lines += [f"  {run.run_id}  {_values(run)}" for run in left[:FEW]]
     if len(left) > FEW:
         lines.append(f"  ... and {len(left) - FEW} more")
@@ -56,16 +62,18 @@ def at_the_start(plan: Plan, folder: Path, where: str, points: int, runs: int) -
         points: of the grid; runs: that they are.
     """
     lines = [f"simulated again: {reason}" for reason in plan.replaced]
-    if points > runs:
-        lines.append(
-            f"{points} points are {_many(runs)}: some are the same, or set a key "
-            "that a later one sets again"
-        )
+    lines += _fewer(points, runs)
     for code, count in plan.other_code.items():
         lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")
     there = f", {len(plan.done)} are there already" if plan.done else ""
     lines.append(f"{_many(len(plan.left))} to do in {folder}{there}; on {where}")
     return "\n".join(lines)
+
+
+def _fewer(points: int, runs: int) -> list[str]:
+    """A line on points of a grid that are fewer runs; none if they are as many."""
+    why = "some are the same, or set a key that a later one sets again"
+    return [f"{points} points are {_many(runs)}: {why}"] if points > runs else []
 
 
 def _many(runs: int) -> str:

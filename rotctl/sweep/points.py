@@ -96,11 +96,11 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     texts = [one.text for one in assignments]
     if any(one.ordered or one.key.startswith(PARTS) for one in assignments):
         return load(texts)
-    labels.require_own((one.key, one.value) for one in assignments)
     choosing = tuple(one.text for one in assignments if one.way is None)
     if choosing not in bases:
         bases[choosing] = load(list(choosing))
     base = bases[choosing]
+    labels.require_own(((one.key, one.value) for one in assignments), lambda: to_dict(base))
     if isinstance(base.behaviour, ChainSettings) and any(
         one.key.startswith(TAKEN) for one in assignments
     ):
