@@ -8,6 +8,7 @@ from rotctl.config import load
 from rotctl.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
+PUSHED = ("disturbance=push", "disturbance.impulse=80", "disturbance.direction=0")
 COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
 
 
@@ -50,6 +51,14 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
         (
             ["behaviour=pirouette_one_foot", "duration=4", "seed=2014"],
             r"4.00 s, \d.\d\d s after it was there: it is to rest for 2 s",
+        ),
+        (
+            ["behaviour=get_up", "duration=2"],
+            "2.00 s, before it is up: it has 4 s, and is to rest for 2 s",
+        ),
+        (
+            ["behaviour=stand_step", *PUSHED, "disturbance.time=0.5", "duration=1"],
+            "1.00 s, 0.38 s after it was pushed: it is to rest for 2 s",
         ),
     ],
 )

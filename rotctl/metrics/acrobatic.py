@@ -130,7 +130,7 @@ def to(target: float, criteria: AcrobaticCriteria) -> AcrobaticCriteria:
 def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> tuple[str, set[str]]:
     """How touch-downs differ from the order that is asked for, and what is to come down next.
 
-    Both are empty if all came down in that order.
+    Both are empty if all came down in that order, and nothing but feet after it.
     """
     feet = set(criteria.landing.feet)
     groups = [set(group) for group in criteria.order]
@@ -145,8 +145,10 @@ def out_of_order(events: list[TouchDown], criteria: AcrobaticCriteria) -> tuple[
             continue  # a step before it begins
         elif begun >= 0 and body in groups[begun]:
             continue  # once more
-        elif missing or begun + 1 < len(groups) or body not in feet:
+        elif missing or begun + 1 < len(groups):
             return f"{body} came down out of order, at {time:.2f} s", set()
+        elif body not in feet:  # the order is complete: the move was done, and then it fell
+            return f"fell: {body} came down at {time:.2f} s", set()
     if begun + 1 < len(groups):
         missing = missing or groups[begun + 1]
     return "", missing

@@ -12,6 +12,7 @@ from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
 from rotctl.metrics.finish import FinishCriteria
 from rotctl.metrics.flip import HOP, FlipCriteria, longest_flight, turn
+from rotctl.metrics.getting_up import GettingUpCriteria
 from rotctl.metrics.one_foot import OneFootCriteria
 from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.rolling import RollingCriteria
@@ -79,6 +80,9 @@ def _missing(
         return _over_the_hands(log, criteria, commanded["target_excursion"], lasted, period)
     if isinstance(criteria, OneFootCriteria):
         return _on_one_foot(log, criteria, commanded["target_excursion"], lasted, period)
+    if isinstance(criteria, GettingUpCriteria):
+        up = not math.isnan(columns["up_from"])
+        return "" if up or lasted >= criteria.within else _not_up(criteria)
     if not isinstance(criteria, FlipCriteria) or on_others(log, criteria.landing.feet).any():
         return ""
     _, landed = longest_flight(log)
@@ -151,10 +155,17 @@ def _over_the_hands(
     return f"before {names} {'come' if len(missing) > 1 else 'comes'} down" if moves else ""
 
 
+def _not_up(criteria: GettingUpCriteria) -> str:
+    return f"before it is up: it has {criteria.within:g} s, and is to rest for {criteria.rest:g} s"
+
+
 def _standing(log: Arrays, rest: float, period: float) -> str:
     first = int(np.argmax(np.asarray(log["contacts/count"]) > 0))
+    pushed = np.flatnonzero(floats(log, "disturbance/wrench").any(axis=1))
     lasted = len(np.asarray(log["contacts/count"])) * period
     what = "it landed" if first else "it began"
+    if len(pushed) and first <= pushed[-1] < len(log["contacts/count"]) - 1:
+        what, first = "it was pushed", int(pushed[-1]) + 1
     return _in_the_air(log) or _resting(what, first * period, lasted, rest)
 
 

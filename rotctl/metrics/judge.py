@@ -147,7 +147,9 @@ def judge(
         found |= pace.measure(rolling_log, means, commanded, settle)
     elif isinstance(criteria, StandingCriteria):
         stood, asked = standing.measure(log, criteria, period), {}
-        found, reason = dict(vars(stood)), standing.failure(stood, criteria, steps * period)
+        touched = standing.others(log, criteria.feet)
+        reason = standing.failure(stood, criteria, steps * period, touched)
+        found = dict(vars(stood))
     elif isinstance(criteria, DiveCriteria):
         found, reason = dive.judge(log, criteria, commanded["target_excursion"], period)
     elif isinstance(criteria, AcrobaticCriteria):

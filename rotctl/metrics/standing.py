@@ -1,6 +1,7 @@
 """A run that stands, or lands and stands, in numbers: on what, how upright, how still."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -82,23 +83,43 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
 
 def on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
     """(steps,) whether anything but these bodies touches the ground."""
-    names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/body"]).tolist()]
-    allowed = [-1, *(i for i, name in enumerate(names) if name in feet)]
-    others = ~np.isin(np.asarray(log["contacts/body"]), allowed)
+    others = ~np.isin(np.asarray(log["contacts/body"]), _allowed(_names(log), feet))
     return np.asarray(others.any(axis=1))
 
 
-def failure(metrics: StandingMetrics, criteria: StandingCriteria, duration: float) -> str:
-    """Why it did not stay up; empty if it did. `duration` is the run's [s]."""
+def others(log: Arrays, feet: tuple[str, ...]) -> list[str]:
+    """Names of all but these bodies that touch the ground at some time, as the model has them."""
+    names, bodies = _names(log), np.unique(np.asarray(log["contacts/body"])).tolist()
+    allowed = _allowed(names, feet)
+    return [names[body] for body in bodies if body not in allowed]
+
+
+def _names(log: Arrays) -> list[str]:
+    return [name.decode("utf-8", "replace") for name in np.asarray(log["model/body"]).tolist()]
+
+
+def _allowed(names: Sequence[str], feet: tuple[str, ...]) -> list[int]:
+    return [-1, *(i for i, name in enumerate(names) if name in feet)]
+
+
+def failure(
+    metrics: StandingMetrics,
+    criteria: StandingCriteria,
+    duration: float,
+    touched: Sequence[str] = (),
+) -> str:
+    """Why it did not stay up; empty if it did.
+
+    Args:
+        duration: of the run [s].
+        touched: what came down and may not, see `others`; is named where more than feet may.
+    """
     m, c = metrics, criteria
     feet = all(name.startswith("foot") for name in c.feet)
-    allowed = "the feet" if feet else ", ".join(c.feet)
+    what = "more than the feet" if feet else f"{', '.join(touched)}, which may not,"
     low = m.stature_least if c.kind == "standing" else m.stature_end
     rules = (
-        (
-            m.other_contact == 0.0,
-            f"touched the ground with more than {allowed} for {m.other_contact:.2f} s",
-        ),
+        (m.other_contact == 0.0, f"touched the ground with {what} for {m.other_contact:.2f} s"),
         (low > c.height, f"sank to {low:.2f} of its height"),
         (m.lean_end < c.lean, f"leans by {m.lean_end:.0f} deg at the end"),
         (m.speed_end < c.speed, f"still moves at {m.speed_end:.2f} m/s at the end"),
