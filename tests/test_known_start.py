@@ -317,7 +317,7 @@ def test_a_quaternion_of_no_length_is_refused(w):
         ["place:[0,0]", "gap:0", f"orientation:[{w},0,0,0]", "velocity:[0,0,0]"]
         + ["angular_velocity:[0,0,0]", "pose:{}", "speeds:{}"]
     )
-    with pytest.raises(InputError, match=rf"start\.state: {NO_LENGTH}"):
+    with pytest.raises(InputError, match=rf"start\.state\.{NO_LENGTH}"):
         load(["start=rest", f"+start.state={{{said}}}"])
 
 
