@@ -5,7 +5,6 @@ rises, along the way that it came on. Until they begin the run is the roll's alo
 want is no part of it.
 """
 
-import re
 from dataclasses import field, replace
 from functools import lru_cache
 from math import degrees, tau
@@ -22,7 +21,6 @@ from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.behaviours.stages import Stage, TaskSettings
 from rotctl.behaviours.support import pendulum_rate
 from rotctl.control import Command, ControllerSettings
-from rotctl.errors import InputError
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
@@ -111,10 +109,7 @@ class Finishing:
         @lru_cache(maxsize=1)
         def end(turned: float) -> Staged:
             faced = replace(staged, heading=staged.heading + degrees(turned))
-            try:
-                return Staged(faced, model, control, measured)
-            except InputError as error:
-                raise InputError(_here(str(error))) from None
+            return Staged(faced, model, control, measured, "behaviour.finish")
 
         self._end = end
         names = end(0.0).tasks
@@ -177,8 +172,3 @@ class Finishing:
             return self._roll.signals(memory.roll, state)
         signals = self._stages(memory).signals(memory.end, state)
         return signals._replace(stage=signals.stage + 1)
-
-
-def _here(complaint: str) -> str:
-    """A complaint about stages with the keys that they have here."""
-    return re.sub(r"\bbehaviour\.(?=stages\.|tasks\.)", "behaviour.finish.", complaint)

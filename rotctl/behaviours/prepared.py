@@ -22,8 +22,6 @@ from rotctl.mechanics.model import Model
 from rotctl.motion import make_pose_pair
 from rotctl.rotations import Array
 
-STAGES = "behaviour.stages"
-
 
 @dataclass(frozen=True)
 class Prepared:
@@ -46,7 +44,8 @@ class Prepared:
 
 
 def prepared(
-    number: int,
+    place: str,
+    key: str,
     stage: Stage,
     common: Mapping[str, TaskSettings],
     names: Sequence[str],
@@ -57,7 +56,8 @@ def prepared(
     """Make a stage ready.
 
     Args:
-        number: of the stage among the behaviour's.
+        place: where the settings of the stages and of common tasks stand, `behaviour`.
+        key: where the stage stands, `behaviour.stages.0`.
         common: tasks that the behaviour has in all stages, by name.
         names: of all tasks of the behaviour, see `task_names`.
         axes: rows are the behaviour's forward, left and up.
@@ -72,19 +72,18 @@ def prepared(
     named = {name: wanted.gains or name for name, wanted in every.items()}
     gains = gains_of(control, tuple(named.values()))
     for name, wanted in every.items():
-        where = f"{STAGES}.{number}" if name in stage.tasks else "behaviour"
-        key = f"{where}.tasks.{name}"
-        bodies = body_ids(model.mj, [wanted.body], f"{key}.body") if wanted.body else [0]
+        said = f"{key if name in stage.tasks else place}.tasks.{name}"
+        bodies = body_ids(model.mj, [wanted.body], f"{said}.body") if wanted.body else [0]
         for body, slot in zip(bodies, task_names(model, name, wanted), strict=True):
             if wanted.aim:
-                wanted.aim.check(model, f"{key}.aim")
+                wanted.aim.check(model, f"{said}.aim")
                 filled.append((len(rows), wanted.kind, wanted.aim))
             rows.append(
                 task(kind(wanted.kind).number, gains[named[name]], axes, body, wanted.point)
             )
             slots.append(names.index(slot))
     held_out = model.excluded.copy()
-    held_out[body_ids(model.mj, stage.held_out, f"{STAGES}.{number}.held_out")] = 1
+    held_out[body_ids(model.mj, stage.held_out, f"{key}.held_out")] = 1
     tasks = np.concatenate([np.zeros(0, TASK), *rows])
     aims = {name: wanted.aim for name, wanted in every.items() if wanted.aim}
     return Prepared(
@@ -92,7 +91,7 @@ def prepared(
         fillers=[(tasks[row], kind_name, aim) for row, kind_name, aim in filled],
         slots=slots,
         held_out=held_out,
-        behind=_behind(number, stage, model),
+        behind=_behind(f"{key}.toes", stage, model),
         pose=pose_gains_of(control, stage.pose),
         contact=contact_gains_of(control, stage.contact),
         aims=aims,
@@ -108,19 +107,18 @@ def task_names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
 
 
 def pose_law(
-    number: int, stage: Stage, shape: str, frame: Frame, target: float, model: Model
+    key: str, stage: Stage, shape: str, frame: Frame, target: float, model: Model
 ) -> PoseLaw:
     """What says a stage's pose.
 
     Args:
-        number: of the stage.
+        key: where the stage stands.
         shape: in which it flies, if it does.
         target: to turn [rad].
 
     Raises:
         InputError: a joint or a body is not there.
     """
-    key = f"{STAGES}.{number}"
     if stage.flight:
         return Flight(stage.flight, model, frame, target, f"{key}.flight", shape)
     if stage.rise:
@@ -135,11 +133,11 @@ def pose_law(
     return OverPhase(make_pose_pair(model, stage.poses, f"{key}.poses"), stage.lead, stage.beyond)
 
 
-def _behind(number: int, stage: Stage, model: Model) -> Array | None:
+def _behind(key: str, stage: Stage, model: Model) -> Array | None:
     """What of each body (nbody,) may only be used where it stands on its front."""
     if not stage.toes:
         return None
-    mj, key = model.mj, f"{STAGES}.{number}.toes"
+    mj = model.mj
     behind = np.full(mj.nbody, -np.inf)
     for body in body_ids(mj, stage.toes, key):
         solid = (mj.geom_bodyid == body) & (mj.geom_contype > 0)

@@ -15,7 +15,7 @@ from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
 from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.posing import OverPhase
-from rotctl.behaviours.prepared import STAGES, pose_law, prepared, task_names
+from rotctl.behaviours.prepared import pose_law, prepared, task_names
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import mirrored
 from rotctl.control import Command, ControllerSettings
@@ -67,8 +67,12 @@ class Staged:
         model: Model,
         control: ControllerSettings,
         measured: ExcursionSettings,
+        place: str = "behaviour",
     ) -> None:
         """Prepare the stages.
+
+        Args:
+            place: where the settings stand, for messages.
 
         Raises:
             InputError: a body or a joint is not there, or a task has no gains.
@@ -88,8 +92,8 @@ class Staged:
         stages = [take_off.at_speed(stage, settings.take_off) for stage in settings.stages]
         self._stages = tuple(mirrored(s, model) if right else s for s in stages)
         found: dict[str, None] = {}
-        for number, stage in enumerate(self._stages):
-            key = f"{STAGES}.{number}"
+        keyed = [(f"{place}.stages.{i}", stage) for i, stage in enumerate(self._stages)]
+        for key, stage in keyed:
             for name, wanted in (settings.tasks | stage.tasks).items():
                 found.update(dict.fromkeys(task_names(model, name, wanted)))
             if stage.until:
@@ -99,12 +103,12 @@ class Staged:
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
         self._parts = [
-            prepared(number, stage, settings.tasks, self.tasks, self.axes, control, model)
-            for number, stage in enumerate(self._stages)
+            prepared(place, key, stage, settings.tasks, self.tasks, self.axes, control, model)
+            for key, stage in keyed
         ]
         self._poses = [
-            pose_law(number, stage, settings.shape, self._frame, self._target, model)
-            for number, stage in enumerate(self._stages)
+            pose_law(key, stage, settings.shape, self._frame, self._target, model)
+            for key, stage in keyed
         ]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
         for part in self._parts:

@@ -33,8 +33,9 @@ class Waiting:
         for joint in angles:
             motors = model.motors(joint, KEY)
             self.angles[motors] = wanted[motors]
+        self._own = np.isnan(self.angles)
 
     def settled(self, pose: Array, waits: float) -> Array:
         """A pose (nu,) of one that waits so much [-]: at 1 it is the waiting one's."""
         there = pose + waits * (self.angles - pose)
-        return np.where(np.isnan(self.angles), pose, there)
+        return np.where(self._own, pose, there)

@@ -151,8 +151,9 @@ class Place:
         angles: turned, between which it goes up or down there [deg], in the target's sense.
         height: of the point over the ground in the end [m]; under it, and it comes down for sure.
         ahead: of where the body comes to rest, across the way [m].
-        room: that it may be set down nearer or further than `distance`, to be
-        short: of where the body comes to rest along the way when the limb is down [m].
+        room: by how much it may be set down nearer or further than `distance` [m], where the body
+            comes to rest along the way when the limb is down; 0 keeps to the distance.
+        short: so far before that place [m].
     """
 
     law: Literal["place"]
