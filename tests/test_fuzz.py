@@ -154,3 +154,11 @@ def test_a_fault_is_seen(tmp_path, monkeypatch, command, fault):
     found = child.give(command, here, [here])
     names = SimpleNamespace(outside=tmp_path / "outside", kept=tmp_path / "kept")
     assert found.fault == fault.format(**vars(names))
+
+
+def test_what_the_parent_holds_is_no_fault_of_the_child(tmp_path):
+    here = tmp_path / "in"
+    here.mkdir()
+    held = bytearray(b"x") * child.MEMORY
+    found = child.give(says(code=0), here, [here])
+    assert (found.fault, len(held)) == ("", child.MEMORY)

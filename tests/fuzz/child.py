@@ -1,8 +1,9 @@
 """One input, given to a command in a child process: what it may take, and what counts as a fault.
 
 A fault is an exception that reaches us, a signal, an exit code or a refusal other than those the
-help tells of, more than 20 s of CPU or a minute of waiting, more than a gigabyte, a file that is
-written or removed elsewhere than in the folder given, and a process that is no helper of ours.
+help tells of, more than 20 s of CPU or a minute of waiting, a gigabyte more than it began with, a
+file that is written or removed elsewhere than in the folder given, and a process that is no helper
+of ours.
 """
 
 import io
@@ -18,7 +19,7 @@ from pathlib import Path
 
 CPU = 20  # [s]
 WALL = 90.0  # [s]; a busy machine gives a third of its CPU
-MEMORY = 2**30  # [bytes] resident
+MEMORY = 2**30  # [bytes] resident, beyond what a child holds as it begins
 HELPERS = ("git", "ffmpeg", "fc", Path(sys.executable).name)  # programs that rotctl runs
 LONGEST = 2500  # characters of what is said on stderr, with all valid choices
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
@@ -46,8 +47,10 @@ def give(command, folder, allowed):
     """
     report = Path(folder).parent / "report"
     report.unlink(missing_ok=True)
+    begins, tells = os.pipe()  # a child's peak begins at what its parent holds, a gigabyte at times
     pid = os.fork()
     if pid == 0:
+        os.write(tells, str(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss).encode())
         _live(command, folder, [os.path.realpath(path) for path in allowed], report)
     begin, status, usage = time.monotonic(), 0, None
     while usage is None:
@@ -59,13 +62,16 @@ def give(command, folder, allowed):
             _, status, usage = os.wait4(pid, 0)
         else:
             time.sleep(0.002)
+    held = int(os.read(begins, 32))
+    os.close(begins)
+    os.close(tells)
     said = report.read_text(errors="replace").split("\0") if report.exists() else ["", "", ""]
-    return _judged(os.waitstatus_to_exitcode(status), said, usage)
+    return _judged(os.waitstatus_to_exitcode(status), said, usage, held)
 
 
-def _judged(code, said, usage):
+def _judged(code, said, usage, held):
     trouble, stdout, stderr = said
-    cpu, memory = usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+    cpu, memory = usage.ru_utime + usage.ru_stime, (usage.ru_maxrss - held) * 1024
     lines = stderr.splitlines()
     fault = ""
     if code in (-signal.SIGXCPU, -signal.SIGKILL) or cpu > CPU:
