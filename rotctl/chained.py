@@ -23,7 +23,7 @@ GAINS = tuple(part.name for part in fields(Gains))
 GROUPS = ("behaviour", "controller", "criteria", "excursion")  # that make a part
 WORLD = ("character", "terrain")  # that a part has from the run
 ABOUT = ("behaviour", "catch", "course", "criteria", "finish")  # what of a run a part may say
-_OF_A_PART = re.compile(r"behaviour\.parts\[(\d+)\]\.(?=behaviour\b)")
+_OF_A_PART = re.compile(r"behaviour\.parts\.(\d+)\.(?=behaviour\b)")
 Composing = Callable[[list[str]], dict[str, Any]]
 
 
@@ -54,11 +54,11 @@ def composed(
             )
         return {**data, "behaviour": chain}
     _require_few(len(said), 0)
-    made = [_made(f"behaviour.parts[{i}]", part, compose) for i, part in enumerate(said)]
+    made = [_made(f"behaviour.parts.{i}", part, compose) for i, part in enumerate(said)]
     for number, one in enumerate(made):
-        _require_here(f"behaviour.parts[{number}]={brief(said[number])}", one, data)
+        _require_here(f"behaviour.parts.{number}={brief(said[number])}", one, data)
         if number:
-            _require_facing(f"behaviour.parts[{number}]", one, compose)
+            _require_facing(f"behaviour.parts.{number}", one, compose)
     if between is not None and chain.get("ways"):
         raise InputError(
             f"behaviour.between={brief(between)}: behaviour.ways numbers the parts, and what goes "

@@ -150,8 +150,8 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
 
 
 def _begins_with_key(message: str, found: Any) -> bool:
-    """Whether a check of our own says which of the keys there it is about, `ways[0].parts: `."""
-    match = re.match(r"(\w+)(?:\[\d+\]|\.\w+)*: ", message)
+    """Whether a check of our own says which of the keys there it is about, `ways.0.parts: `."""
+    match = re.match(r"(\w+)(?:\.\w+)*: ", message)
     return match is not None and isinstance(found, dict) and match[1] in found
 
 

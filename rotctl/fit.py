@@ -74,7 +74,7 @@ def _require_judged(
                 f"criteria.parts: {rules} of them, and behaviour={behaviour.name} has {links} parts"
             )
         for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
-            _require_judged(part.behaviour, own, model, f"{key}.parts[{number}]")
+            _require_judged(part.behaviour, own, model, f"{key}.parts.{number}")
     if isinstance(criteria, DiveCriteria):
         _require_watched(behaviour, criteria, key)
     stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))

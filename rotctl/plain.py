@@ -1,4 +1,4 @@
-"""Plain data - dicts and lists within each other - and dotted keys into them: `a.b[0]`."""
+"""Plain data - dicts and lists within each other - and dotted keys into them: `a.b.0`."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -9,13 +9,13 @@ NOTHING = object()  # what is where there is nothing; None may be a value
 
 
 def way(key: str) -> Way:
-    """`a.b[0]` to ("a", "b", 0)."""
-    return tuple(int(p) if p.isdecimal() else p for p in re.findall(r"[^.\[\]]+", key))
+    """`a.b.0` to ("a", "b", 0)."""
+    return tuple(int(p) if p.isdecimal() else p for p in re.findall(r"[^.]+", key))
 
 
 def dotted(parts: Iterable[str | int]) -> str:
-    """("a", "b", 0) to `a.b[0]`."""
-    return "".join(f"[{p}]" if isinstance(p, int) else f".{p}" for p in parts).removeprefix(".")
+    """("a", "b", 0) to `a.b.0`."""
+    return ".".join(map(str, parts))
 
 
 def member(data: Any, part: str | int) -> Any:

@@ -165,9 +165,9 @@ def test_between_keys_no_angle_overshoots(tmp_path):
         ({"keys": [*KEYS["keys"], {"turn": 0.6, "pose": {}}]},
          "keys: turn 0.6 must come after 0.6"),
         ({"keys": [*KEYS["keys"], {"turn": 1.0, "pose": {}}]},
-         "keys[3].turn=1.0: must be less than 1"),
+         "keys.3.turn=1.0: must be less than 1"),
         ({"keys": [*KEYS["keys"], {"turn": 0.7, "pose": {}, "at": 0}]},
-         "unknown key 'keys[3].at'; valid keys under keys[3]: turn, pose, tilt"),
+         "unknown key 'keys.3.at'; valid keys under keys.3: turn, pose, tilt"),
         ({"speed": 3}, "unknown key 'speed'; valid keys: name, roll_about, keys, description, "
          "source, licence"),
     ],

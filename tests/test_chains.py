@@ -127,40 +127,40 @@ def test_what_was_said_of_a_part_does_not_act():
 @pytest.mark.parametrize(
     ("parts", "message"),
     [
-        (["back_flap"], 'behaviour.parts[0]: behaviour="back_flap": no such choice; did you mean '
+        (["back_flap"], 'behaviour.parts.0: behaviour="back_flap": no such choice; did you mean '
          "back_flip?"),
-        (["chain"], 'behaviour.parts[0]="chain": is a chain; name its parts'),
-        (["stand", ""], 'behaviour.parts[1]="": must begin with a behaviour, back_flip or '
+        (["chain"], 'behaviour.parts.0="chain": is a chain; name its parts'),
+        (["stand", ""], 'behaviour.parts.1="": must begin with a behaviour, back_flip or '
          "behaviour=back_flip"),
-        (["stand seed=3"], 'behaviour.parts[0]: "seed=3": a part may say behaviour, catch, course, '
+        (["stand seed=3"], 'behaviour.parts.0: "seed=3": a part may say behaviour, catch, course, '
          "criteria, finish"),
-        (["stand character={kind:mjcf,file:/etc/passwd}"], "behaviour.parts[0]: "),
-        (["stand 'x"], "behaviour.parts[0]=\"stand 'x\": No closing quotation"),
+        (["stand character={kind:mjcf,file:/etc/passwd}"], "behaviour.parts.0: "),
+        (["stand 'x"], "behaviour.parts.0=\"stand 'x\": No closing quotation"),
         (["forward_roll", "stand"], "behaviour.parts: 'forward_roll': forward_roll rolls on, and "
          "others follow it; 'behaviour=NAME +finish=stand' comes to an end"),
         (["stand"] * 21, "behaviour.parts: has 21 parts, valid: up to 20 in all"),
         (["stand"] * 11, "behaviour.parts: has 11 parts and behaviour.between adds 10, valid: up "
          "to 20 in all"),
-        (["back_flip ~criteria"], 'behaviour.parts[0]="back_flip ~criteria": leaves no criteria, '
+        (["back_flip ~criteria"], 'behaviour.parts.0="back_flip ~criteria": leaves no criteria, '
          "it must have one"),
-        (["back_flip ~behaviour"], 'behaviour.parts[0]="back_flip ~behaviour": leaves no '
+        (["back_flip ~behaviour"], 'behaviour.parts.0="back_flip ~behaviour": leaves no '
          "behaviour, it must have one"),
         (["back_flip behaviour.stages=7", "stand"], "behaviour.parts: 'back_flip "
          "behaviour.stages=7': behaviour.stages=7: must be a list, in brackets"),
         (["back_flip behaviour.heading=" + "9" * 2000, "stand"],
          "behaviour.parts: 'back_flip behaviour.heading=" + "9" * 29 + "...': behaviour.heading="),
         (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts: \"back_flip "
-         "'behaviour.stages=[5]'\": behaviour.stages[0]=5: must be keys with values"),
-        (["incline +finish=stand", "stand"], 'behaviour.parts[0]="incline +finish=stand": is for '
+         "'behaviour.stages=[5]'\": behaviour.stages.0=5: must be keys with values"),
+        (["incline +finish=stand", "stand"], 'behaviour.parts.0="incline +finish=stand": is for '
          "terrain=incline, and the run has terrain=flat; give the run terrain=incline"),
-        (["stand", "baby_roll_over"], 'behaviour.parts[1]="baby_roll_over": is for character=baby, '
+        (["stand", "baby_roll_over"], 'behaviour.parts.1="baby_roll_over": is for character=baby, '
          "and the run has character=adult; give the run character=baby"),
-        (["back_flip", "forward_roll_1"], 'behaviour.parts[1]="forward_roll_1": is for '
+        (["back_flip", "forward_roll_1"], 'behaviour.parts.1="forward_roll_1": is for '
          "character=adult_free_head, and the run has character=adult; give the run "
          "character=adult_free_head"),
         (["stand", "stand ~behaviour.heading"], "behaviour.parts: \"stand '~behaviour.heading'\": "
          "behaviour.heading: missing, it cannot be left out"),
-        (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts[1]: "
+        (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts.1: "
          "behaviour.heading=90.0: acts on nothing, a later part heads where the feet point as it "
          "begins"),
     ],
@@ -180,7 +180,7 @@ def test_parts_that_are_wrong(parts, message):
         (["behaviour.parts=[]"], "behaviour.parts=[]: too few values, at least 1"),
         (["behaviour.parts=5"], "behaviour.parts=5: must be a list, in brackets"),
         (["~behaviour.parts"], "behaviour.parts: missing, it cannot be left out"),
-        (["behaviour.parts=[[a]]"], 'behaviour.parts[0]=["a"]: must be keys with values'),
+        (["behaviour.parts=[[a]]"], 'behaviour.parts.0=["a"]: must be keys with values'),
         (["behaviour.parts=[{a:1}]"], 'behaviour.between="square": goes between parts that are '
          "texts, and these are in full; give null"),
         (["behaviour.parts=[stand,forward_roll]", "+behaviour.again=0.3"], "behaviour: again=0.3: "
@@ -288,7 +288,7 @@ def test_a_part_that_does_not_fit_is_told_by_what_was_said_of_it():
     config = replace(config, behaviour=replace(config.behaviour, parts=tuple(unsaid)))
     with pytest.raises(InputError) as caught:
         build(config)
-    assert str(caught.value).startswith(f"behaviour.parts[2]: {told}")
+    assert str(caught.value).startswith(f"behaviour.parts.2: {told}")
 
 
 def test_criteria_are_as_many_as_parts():

@@ -407,7 +407,7 @@ def test_a_part_of_a_config_is_shown_alone(cli):
     for key, wanted in (
         ("start", {"start": whole["start"]}),
         ("controller.pose", {"pose": whole["controller"]["pose"]}),
-        ("character.bodies[0].name", {"name": "pelvis"}),
+        ("character.bodies.0.name", {"name": "pelvis"}),
         (".", whole),
     ):
         code, stdout, _ = cli("show", "start=rest", "--part", key)

@@ -109,7 +109,7 @@ def test_same_torques_and_contacts_as_the_reference(overrides):
 def test_heels_are_held_out_alike():
     """Who stands on the front of the feet, pushed."""
     data = to_dict(load(["seed=2", "behaviour=stand", "disturbance=push"]))
-    config = check(put(data, way("behaviour.stages[0].toes"), ["foot"]))
+    config = check(put(data, way("behaviour.stages.0.toes"), ["foot"]))
     held_out = 0
     for asked in along(build(config), 60):
         assert asked.fast.used.tolist() == asked.slow.used.tolist()

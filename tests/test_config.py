@@ -283,7 +283,7 @@ def test_a_bad_value_in_a_list_is_named_by_its_place(plain):
     data["controller"]["tasks"]["linear"]["damping"][2] = math.nan
     with pytest.raises(InputError) as caught:
         check(data)
-    assert str(caught.value) == "controller.tasks.linear.damping[2]=nan: must be a finite number"
+    assert str(caught.value) == "controller.tasks.linear.damping.2=nan: must be a finite number"
 
 
 @pytest.mark.parametrize(
@@ -359,8 +359,8 @@ def test_plain_data_is_checked_the_same_way(plain):
     data["character"]["bodies"][0]["geoms"][0]["sizes"] = data["physics"].pop("substep")
     with pytest.raises(
         InputError,
-        match=r"^unknown key 'character\.bodies\[0\]\.geoms\[0\]\.sizes'; did you mean size\? "
-        r"valid keys under character\.bodies\[0\]\.geoms\[0\]: "
+        match=r"^unknown key 'character\.bodies\.0\.geoms\.0\.sizes'; did you mean size\? "
+        r"valid keys under character\.bodies\.0\.geoms\.0: "
         r"name, size, start, mass, end, hull, colour$",
     ):
         check(data)
@@ -546,7 +546,7 @@ def test_nothing_else_that_is_added_is_simple(text):
     [
         ("[0.1,0.2]", "behaviour.poses.a.knee=[0.1, 0.2]: too few values, at least 3"),
         ("[0,0,0,0]", "must be a mean with pairs of cosine and sine, not 4 numbers"),
-        ("[0,20,0]", "behaviour.poses.a.knee[1]=20: must be less than or equal to 10"),
+        ("[0,20,0]", "behaviour.poses.a.knee.1=20: must be less than or equal to 10"),
         ("high", 'behaviour.poses.a.knee="high": must be a valid number'),
     ],
 )
@@ -582,7 +582,7 @@ def test_an_order_names_bodies_that_are_there():
         ),
         (
             ["behaviour=cartwheel", "behaviour.stages.6.tasks.step_down.aim.room=0"],
-            "behaviour.stages[6].tasks.step_down.aim: short=0.08: acts on nothing without room; "
+            "behaviour.stages.6.tasks.step_down.aim: short=0.08: acts on nothing without room; "
             "give short=0",
         ),
     ],

@@ -274,9 +274,9 @@ NO_LENGTH = "orientation: must be at least 0.001 long, as 1, 0, 0, 0 is, which i
     ("name", "column", "value", "complaint"),
     [
         ("qpos", slice(3, 7), 0.0, f"start.state.{NO_LENGTH}"),
-        ("qpos", 0, 1e15, "start.state.place[0]=1000000000000000.0: must be at most 1e+13 in size"),
+        ("qpos", 0, 1e15, "start.state.place.0=1000000000000000.0: must be at most 1e+13 in size"),
         ("qpos", 9, 1e300, "start.state.pose.waist_z=1e+300: must be at most 1e+13 in size"),
-        ("qvel", 1, -1e20, "start.state.velocity[1]=-1e+20: must be at most 1e+13 in size"),
+        ("qvel", 1, -1e20, "start.state.velocity.1=-1e+20: must be at most 1e+13 in size"),
     ],
 )
 def test_a_strangers_state_that_would_not_load_is_not_written(

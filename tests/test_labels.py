@@ -28,7 +28,7 @@ IS_ANOTHER = "would only call it so, and that is another"
         ),
         (
             ["behaviour=chain", "behaviour.parts=['stand criteria.name=rolling']"],
-            f"behaviour.parts[0]: criteria.name=rolling: {IS_ANOTHER} criteria; "
+            f"behaviour.parts.0: criteria.name=rolling: {IS_ANOTHER} criteria; "
             "write criteria=rolling, or a name of your own",
         ),
     ],
@@ -74,5 +74,5 @@ def test_a_part_of_a_chain_by_a_file_of_ones_own_has_a_name_of_its_own(tmp_path)
     with own(tmp_path), pytest.raises(InputError) as error:
         load(["behaviour=chain", "behaviour.parts=[back_flip,mine]"])
     assert str(error.value) == (
-        f"behaviour.parts[1]: {path}: name: stand_step: is another behaviour; write name: mine"
+        f"behaviour.parts.1: {path}: name: stand_step: is another behaviour; write name: mine"
     )

@@ -63,7 +63,7 @@ def test_the_trunk_stays_as_oblique_as_it_is_asked_to(angle):
         ),
         (
             ["+behaviour.oblique=[90]"],
-            "behaviour.oblique[0]=90: must be less than or equal to 60",
+            "behaviour.oblique.0=90: must be less than or equal to 60",
         ),
         (
             ["behaviour=sideways_roll", "+behaviour.oblique=[15]"],

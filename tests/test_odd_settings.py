@@ -61,11 +61,11 @@ def complaint(chosen, changes):
         (STAND, {"behaviour.tasks.balance.aim.bodies": ["tail"]},
          f"behaviour.tasks.balance.aim.bodies names the unknown body 'tail'; bodies: {BODIES}"),
         (["behaviour=baby_roll_over"], {"behaviour.stages.2.lead": 0.0},
-         "behaviour.stages[2]: beyond=1: the stage 'lie' must have poses and a lead, which is how "
+         "behaviour.stages.2: beyond=1: the stage 'lie' must have poses and a lead, which is how "
          "far ahead they go"),
         (["behaviour=handstand"],
          {"behaviour.stages.1.beyond": 0.5, "behaviour.stages.1.lead": 0.1},
-         "behaviour.stages[1]: beyond=0.5: the stage 'bow' must have poses and a lead, which is "
+         "behaviour.stages.1: beyond=0.5: the stage 'bow' must have poses and a lead, which is "
          "how far ahead they go"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
         (STAND, {"criteria.feet": ["foot"]},
@@ -106,9 +106,8 @@ def test_it_is_refused(chosen, changes, message):
 )  # fmt: skip
 def test_a_message_does_not_repeat_a_megabyte(key):
     said = complaint(STAND, {key: "a" * 10**6})
-    shown = key.replace(".0.", "[0].")
     assert said == (
-        f'{shown}="{"a" * 56}...: must be printable, on one line of at most 200 characters'
+        f'{key}="{"a" * 56}...: must be printable, on one line of at most 200 characters'
     )
 
 

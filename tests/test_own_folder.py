@@ -268,7 +268,7 @@ def test_a_wrong_key_says_more_than_the_one_that_is_missing_for_it(here, cli):
     cli("new", "behaviour", "mine", "--from", "back_flip")
     path = here / "conf" / "behaviour" / "mine.yaml"
     path.write_text(path.read_text().replace("gain: 1.148 ", "gian: 1.148 "))
-    place = "behaviour.stages[0].tasks.balance.aim"
+    place = "behaviour.stages.0.tasks.balance.aim"
     assert cli("run", "behaviour=mine")[2].startswith(
         f"rotctl: {path}: unknown key '{place}.gian'; did you mean gain? valid keys under {place}: "
     )

@@ -147,8 +147,8 @@ def test_a_clip_from_a_path(tmp_path):
         ({"joints": {"a": WAVE, "b": WAVE[:20]}},
          "joints.b has 20 samples, joints.a has 24"),
         ({"joints": {"knee": [*WAVE[:-1], float("nan")]}},
-         "joints.knee[23]=nan: must be a finite number"),
-        ({"joints": {"knee": [*WAVE[:-1], "1"]}}, 'joints.knee[23]="1": must be a valid number'),
+         "joints.knee.23=nan: must be a finite number"),
+        ({"joints": {"knee": [*WAVE[:-1], "1"]}}, 'joints.knee.23="1": must be a valid number'),
         ({"pelvis": [[1.0, 0.0, 0.0, 0.0]]}, "pelvis has 1 samples, joints.knee has 24"),
         ({"pelvis": [[0.0] * 4 for _ in range(N)]}, "pelvis: a quaternion must have length 1"),
         ({"speed": 1.0}, "unknown key 'speed'; valid keys: name, roll_about, joints, pelvis, "

@@ -28,7 +28,7 @@ SPACE = {
         {"key": "behaviour.poses.a.knee", "low": 1.0, "high": 2.7, "unit": "rad"},
         {"key": "behaviour.poses.b.knee", "low": 0.5, "high": 2.7, "unit": "rad"},
         {
-            "key": "controller.tasks.linear.damping[0]",
+            "key": "controller.tasks.linear.damping.0",
             "low": 1.0,
             "high": 10.0,
             "unit": "1/s",
@@ -197,9 +197,7 @@ def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypat
     chosen = config.load(["behaviour=small_tuned", "controller=small_tuned", "duration=0.25"])
     best = found.candidates[0].values
     assert chosen.behaviour.poses.a["knee"] == best["behaviour.poses.a.knee"]
-    assert (
-        chosen.controller.tasks["linear"].damping[0] == best["controller.tasks.linear.damping[0]"]
-    )
+    assert chosen.controller.tasks["linear"].damping[0] == best["controller.tasks.linear.damping.0"]
     assert chosen.behaviour.speed == 1.1
     assert chosen.behaviour.name == "small_tuned"
     assert run(chosen, tmp_path / "runs").summary["behaviour"] == "small_tuned"

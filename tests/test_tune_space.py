@@ -63,18 +63,18 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 1, "hi"],
             1,
-            "unknown key 'parameters[1].hi'; did you mean high? "
-            "valid keys under parameters[1]: key, low, high, unit, "
+            "unknown key 'parameters.1.hi'; did you mean high? "
+            "valid keys under parameters.1: key, low, high, unit, "
             "scale, start, reason",
         ),
-        (["parameters", 1, "high"], 100.0, "parameters[1]: low=200 must be below high=100"),
-        (["parameters", 1, "low"], -1.0, "parameters[1]: low=-1 must be above 0 on a log scale"),
-        (["parameters", 1, "low"], "1", 'parameters[1].low="1": must be a valid number'),
-        (["parameters", 1, "scale"], "x", "parameters[1].scale=\"x\": must be 'linear' or 'log'"),
+        (["parameters", 1, "high"], 100.0, "parameters.1: low=200 must be below high=100"),
+        (["parameters", 1, "low"], -1.0, "parameters.1: low=-1 must be above 0 on a log scale"),
+        (["parameters", 1, "low"], "1", 'parameters.1.low="1": must be a valid number'),
+        (["parameters", 1, "scale"], "x", "parameters.1.scale=\"x\": must be 'linear' or 'log'"),
         (
             ["parameters", 1, "key"],
             "seed",
-            "parameters[1]: key must be dotted names, as in controller.tasks.linear.damping[0]",
+            "parameters.1: key must be dotted names, as in controller.tasks.linear.damping.0",
         ),
         (
             ["parameters", 0, "key"],
@@ -90,7 +90,7 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (
             ["parameters", 0, "key"],
             "controller.tasks.{a",
-            "parameters[0]: key must be dotted names, as in controller.tasks.linear.damping[0]",
+            "parameters.0: key must be dotted names, as in controller.tasks.linear.damping.0",
         ),
         (
             ["objective", "columns"],
@@ -120,7 +120,7 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
             "runs.first_seed=999999: training seeds start at 1,000,000; "
             "those below are for judging",
         ),
-        (["runs", "variations"], [["seed=3"]], f"runs.variations[0]: seed=3: {DRAWN}"),
+        (["runs", "variations"], [["seed=3"]], f"runs.variations.0: seed=3: {DRAWN}"),
         (["base"], ["+seed={x}"], f"base: +seed={{x}}: {DRAWN}"),
         (["sampler", "name"], "random", "sampler.name=\"random\": must be 'cmaes' or 'tpe'"),
         (["name"], "a b", 'name="a b": must be letters, digits and _, a letter first'),
@@ -182,12 +182,12 @@ def test_a_pipe_in_the_place_of_a_space_does_not_hang(tmp_path):
 def test_braces_stand_for_several_keys(tmp_path):
     data = yaml.safe_load(GAINS.read_text())
     data["parameters"] = [
-        {"key": "a.{b, c}[{0,1}]", "low": 0.0, "high": 1.0, "unit": "rad", "reason": "why"},
+        {"key": "a.{b, c}.{0,1}", "low": 0.0, "high": 1.0, "unit": "rad", "reason": "why"},
         {"key": "a.d", "low": 0.0, "high": 2.0, "unit": "s"},
     ]
     (tmp_path / "x.yaml").write_text(yaml.safe_dump(data))
     found = load_space(str(tmp_path / "x.yaml")).parameters
-    assert [p.key for p in found] == ["a.b[0]", "a.b[1]", "a.c[0]", "a.c[1]", "a.d"]
+    assert [p.key for p in found] == ["a.b.0", "a.b.1", "a.c.0", "a.c.1", "a.d"]
     assert {(p.high, p.unit, p.reason) for p in found[:4]} == {(1.0, "rad", "why")}
 
 
@@ -216,8 +216,8 @@ def test_a_number_that_the_config_lacks_begins_at_its_start(tmp_path):
 
 def test_numbers_go_in_and_out_by_key_and_the_rest_stays():
     data = to_dict(load(["controller=rolling"]))
-    assert get(data, "controller.tasks.linear.damping[0]") == 3.62
-    changed = put(data, {"controller.tasks.linear.damping[0]": 5.0, "behaviour.speed": 2.0})
+    assert get(data, "controller.tasks.linear.damping.0") == 3.62
+    changed = put(data, {"controller.tasks.linear.damping.0": 5.0, "behaviour.speed": 2.0})
     assert list(changed["controller"]["tasks"]["linear"]["damping"]) == [5.0, 8.59, 7.8]
     assert changed["behaviour"]["speed"] == 2.0
     assert data == to_dict(load(["controller=rolling"]))
@@ -231,7 +231,7 @@ def test_numbers_go_in_and_out_by_key_and_the_rest_stays():
     ("key", "said"),
     [
         ("controller.pose.weigh", "not in the config; valid under controller.pose: stiffness, "),
-        ("controller.tasks.linear.damping[3]", "not in the config; valid under controller.tasks.l"),
+        ("controller.tasks.linear.damping.3", "not in the config; valid under controller.tasks.l"),
         ("controller.tasks.linear.damping", "is a list of 3, no single number"),
         ("controller.solver", "is the value 'boxqp', no single number"),
     ],
@@ -251,7 +251,7 @@ def test_a_start_outside_its_range_and_a_range_outside_the_config_are_refused(tm
         start_values(space, variations(space, [])[0])
     path.write_text(text.replace("low: 0.5, high: 20.0, scale: log", "low: -0.5, high: 20.0"))
     space = load_space(str(path))
-    with pytest.raises(InputError, match=r"^controller\.tasks\.spin\.weight\[1\]=-0\.5: must be"):
+    with pytest.raises(InputError, match=r"^controller\.tasks\.spin\.weight\.1=-0\.5: must be"):
         start_values(space, variations(space, [])[0])
 
 

@@ -109,12 +109,12 @@ def test_face_down_is_the_front_within_an_angle_of_straight_down(off, met):
 @pytest.mark.parametrize(
     ("ways", "said"),
     [
-        ("[{parts:[0,2,7]}]", "behaviour.ways[0].parts: no part 7; valid: 0 to 3"),
-        ("[{parts:[0,2,0]}]", "behaviour.ways[0].parts: a part comes once on a way"),
-        ("[{parts:[0]},{parts:[1]}]", "behaviour.ways[0]: must have a when"),
+        ("[{parts:[0,2,7]}]", "behaviour.ways.0.parts: no part 7; valid: 0 to 3"),
+        ("[{parts:[0,2,0]}]", "behaviour.ways.0.parts: a part comes once on a way"),
+        ("[{parts:[0]},{parts:[1]}]", "behaviour.ways.0: must have a when"),
         (
             "[{parts:[0,2],when:{kind:face_down,angle:60}}]",
-            "behaviour.ways[0]: must have no when, as the last one",
+            "behaviour.ways.0: must have no when, as the last one",
         ),
         ("[{parts:[0,2]}]", "behaviour.ways: none leads through part 1"),
     ],

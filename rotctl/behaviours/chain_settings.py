@@ -51,9 +51,7 @@ class PartSettings:
         Args:
             number: of the part.
         """
-        return (
-            f"behaviour.parts: {clip(self.said)!r}" if self.said else f"behaviour.parts[{number}]"
-        )
+        return f"behaviour.parts: {clip(self.said)!r}" if self.said else f"behaviour.parts.{number}"
 
     @property
     def ends(self) -> bool:

@@ -104,12 +104,12 @@ def check(ways: tuple[Way, ...], parts: int) -> None:
     for number, way in enumerate(ways):
         for part in way.parts:
             if part >= parts:
-                raise ValueError(f"ways[{number}].parts: no part {part}; valid: 0 to {parts - 1}")
+                raise ValueError(f"ways.{number}.parts: no part {part}; valid: 0 to {parts - 1}")
         if len(set(way.parts)) < len(way.parts):
-            raise ValueError(f"ways[{number}].parts: a part comes once on a way")
+            raise ValueError(f"ways.{number}.parts: a part comes once on a way")
         if (way.when is None) != (number + 1 == len(ways)):
             wrong = "must have a when" if way.when is None else "must have no when, as the last one"
-            raise ValueError(f"ways[{number}]: {wrong}")
+            raise ValueError(f"ways.{number}: {wrong}")
     unused = set(range(parts)).difference(*(way.parts for way in ways))
     if unused:
         raise ValueError(f"ways: none leads through part {min(unused)}")

@@ -179,6 +179,6 @@ def _differences(before: Any, now: Any, where: str = "") -> Iterator[str]:
             yield from _differences(before.get(key), now.get(key), inner)
     elif isinstance(before, list) and isinstance(now, list) and len(before) == len(now):
         for i, pair in enumerate(zip(before, now, strict=True)):
-            yield from _differences(*pair, f"{where}[{i}]")
+            yield from _differences(*pair, f"{where}.{i}")
     elif before != now:
         yield f"{where}={json.dumps(before)} (now {json.dumps(now)})"

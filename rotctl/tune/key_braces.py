@@ -1,4 +1,4 @@
-"""Braces in a space's keys, as in a shell: `a.{b,c}[{0,1}]` stands for four keys."""
+"""Braces in a space's keys, as in a shell: `a.{b,c}.{0,1}` stands for four keys."""
 
 import re
 from collections.abc import Iterable, Iterator

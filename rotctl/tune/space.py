@@ -21,7 +21,7 @@ from rotctl.tune.key_braces import MOST, expanded
 ROLLING = tuple(c.name for kind in (rolling, appearance, pace) for c in kind.COLUMNS)
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
 # An index of three digits is plenty: a list is made as long as that.
-_KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\[\d{1,3}\])?")
+_KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\.\d{1,3})?")
 _DRAWN = re.compile(r"[+~]*seed\b")
 
 SamplerName = Literal["cmaes", "tpe"]
@@ -63,7 +63,7 @@ class Parameter:
     """One number of the config that the search may change.
 
     Attributes:
-        key: dotted, an element of a list in brackets: `controller.tasks.linear.damping[0]`; in a
+        key: dotted, an element of a list by its number: `controller.tasks.linear.damping.0`; in a
             file, braces stand for several: `behaviour.poses.{a,b}.knee`.
         low, high: its range, in `unit`.
         scale: `log` for what is known only to a factor.
@@ -81,7 +81,7 @@ class Parameter:
 
     def __post_init__(self) -> None:
         if not _KEY.fullmatch(self.key):
-            raise ValueError("key must be dotted names, as in controller.tasks.linear.damping[0]")
+            raise ValueError("key must be dotted names, as in controller.tasks.linear.damping.0")
         if self.low >= self.high:
             raise ValueError(f"low={self.low:g} must be below high={self.high:g}")
         if self.scale == "log" and self.low <= 0:
