@@ -12,8 +12,10 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial import ConvexHull
 
 from rotctl.behaviours import support
+from rotctl.behaviours.footholds import capture_point, landing
 from rotctl.behaviours.scene import Step
-from rotctl.behaviours.stepping import arrival
+from rotctl.behaviours.swing_foot import chosen
+from rotctl.behaviours.swinging import arrival
 from rotctl.config import load
 from rotctl.mechanics.state import read
 from rotctl.run import in_memory
@@ -98,7 +100,7 @@ def test_the_body_comes_to_rest_over_its_capture_point(scenario, standing):
     the capture point from then on, stops there."""
     scene = scene_of(scenario, standing, (0.3, -0.2, 0.0), (0.4, 0.9, 0.0))
     momentum, mass = scene.state.momentum, scenario.model.mass
-    x, y = law(scenario).capture_point(scene)
+    x, y = capture_point(law(scenario), scene)
     height = momentum.com[2]
     rate2 = 9.81 / height
     brief = 1e-6
@@ -123,18 +125,20 @@ def test_the_foot_goes_where_the_point_will_be_and_a_little_further(scenario, st
     scene = scene_of(scenario, standing, (0.9, 0.1, 0.0), step=Step(left, right, 0.0))
     data, aim = standing, law(scenario)
     ends = support.ends(scenario.model, data, [right])
-    pressure = support.within(support.hull(ends), support.middle(ends), aim.capture_point(scene), 0)
+    pressure = support.within(
+        support.hull(ends), support.middle(ends), capture_point(aim, scene), 0
+    )
     rate = np.sqrt(9.81 / scene.state.momentum.com[2])
     run = solve_ivp(
         lambda t, xi: rate * (xi - np.array(pressure)),
         (0.0, 0.12),
-        aim.capture_point(scene),
+        capture_point(aim, scene),
         rtol=1e-10,
     )
     middle = np.array(support.middle(ends))
     way = run.y[:, -1] - middle
     goal = middle + way * (1.0 + aim.over / np.linalg.norm(way))
-    assert aim.landing(scene, 0.12) == pytest.approx(tuple(goal), abs=1e-6)
+    assert landing(aim, scene, scene.step, 0.12) == pytest.approx(tuple(goal), abs=1e-6)
 
 
 @pytest.mark.parametrize("side", [0, 1], ids=["left", "right"])
@@ -149,7 +153,7 @@ def test_legs_do_not_cross_and_no_foot_goes_further_than_legs_reach(
     velocity = np.append(np.random.default_rng(seed).normal(size=2) * 1.5, 0.0)
     scene = scene_of(scenario, standing, velocity, step=Step(swing, stance, 0.0))
     aim, data = law(scenario), standing
-    at = np.array(aim.landing(scene, 0.1))
+    at = np.array(landing(aim, scene, scene.step, 0.1))
     middle = np.array(support.middle(support.ends(scenario.model, data, [stance])))
     outward = np.array([-np.sin(heading), np.cos(heading)]) * (1 - 2 * side)
     far = np.linalg.norm(at - middle)
@@ -167,7 +171,7 @@ def test_who_bows_past_level_knows_its_sides_by_its_left(scenario, standing, fac
     scene = scene_of(scenario, standing, step=Step(swing, stance, 0.0))
     aim = replace(law(scenario), facing=facing)
     across = support.middle(support.ends(scenario.model, standing, [stance]))[1]
-    to_left = aim.landing(scene, 0.1)[1] - across
+    to_left = landing(aim, scene, scene.step, 0.1)[1] - across
     upright = bow < np.pi / 2
     assert (to_left > 0.0) == (upright or facing == "left")
     if facing == "left":
@@ -185,7 +189,7 @@ def test_in_a_wide_stance_the_other_foot_comes_in_first(scenario, standing, apar
     scene = pushed_beyond(scenario, standing, apart, beyond)
     for narrow, expected in ((0.3, first), (0.0, "near")):
         aim = replace(by_sides(scenario), narrow=narrow)
-        swing = aim.swinging(scene, [left, right])
+        swing = chosen(aim, scene, [left, right])
         assert swing == {"near": left, "far": right}[expected]
 
 
@@ -225,7 +229,7 @@ def test_the_foot_swings_whose_step_leaves_the_point_least_far_out(
     left, right = feet(scenario)
     aim = replace(law(scenario), spin=0.0)
     scene = pushed_beyond(scenario, standing, apart, beyond)
-    assert aim.swinging(scene, [left, right]) == {"near": left, "far": right}[first]
+    assert chosen(aim, scene, [left, right]) == {"near": left, "far": right}[first]
 
 
 def test_a_foot_that_has_just_lost_the_ground_can_bear(scenario, standing):
@@ -233,8 +237,8 @@ def test_a_foot_that_has_just_lost_the_ground_can_bear(scenario, standing):
     left, right = feet(scenario)
     aim = replace(law(scenario), spin=0.0)
     scene = pushed_beyond(scenario, standing, 0.25, 0.3)
-    assert aim.swinging(scene, [left]) == left
-    assert replace(aim, away=0.0).swinging(scene, [left]) == right
+    assert chosen(aim, scene, [left]) == left
+    assert chosen(replace(aim, away=0.0), scene, [left]) == right
 
 
 @pytest.mark.parametrize("apart", [0.4, 0.6])

@@ -6,7 +6,7 @@ from typing import Literal
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.stepping import FACING, Facing
+from rotctl.behaviours.support import FACING, Facing
 from rotctl.control.task import Tasks
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model

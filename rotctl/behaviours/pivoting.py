@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.stepping import arrival
+from rotctl.behaviours.swinging import arrival
 from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id, body_ids

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from math import fsum, inf, sqrt
+from typing import Literal
 
 import mujoco
 import numpy as np
@@ -13,6 +14,7 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
 Point = tuple[float, float]
+Facing = Literal["front", "left"]
 CLEAR = 0.03  # [m] above the ground
 LEAST_HEIGHT = 0.1  # [m] of a centre of mass over its feet, for the pendulum that it is
 
@@ -158,6 +160,15 @@ def forward_of_left(state: State, body: int) -> Point:
     x, y = state.data.xmat[body].reshape(3, 3)[:2, 1].tolist()
     length = sqrt(x * x + y * y) or 1.0
     return y / length, -x / length
+
+
+FACING = {"front": forward, "left": forward_of_left}
+
+
+def turned(x: float, y: float, forward: Point, sense: float) -> Point:
+    """A level vector turned as +x is to `forward` (sense 1), or back (-1)."""
+    cosine, sine = forward[0], sense * forward[1]
+    return x * cosine - y * sine, x * sine + y * cosine
 
 
 def pendulum_rate(model: Model, state: State) -> float:

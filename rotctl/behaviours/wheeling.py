@@ -15,7 +15,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.launch import Base, captured
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.stepping import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
+from rotctl.behaviours.swinging import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id, body_ids
