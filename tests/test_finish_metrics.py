@@ -5,6 +5,7 @@ import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
 from rotctl.config import load
+from rotctl.metrics.early import too_short
 from rotctl.metrics.finish import FinishCriteria, judge, rolled, upright
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.scenario import build
@@ -71,6 +72,20 @@ def test_a_roll_that_stands_up():
 )
 def test_what_it_does_instead(changes, said):
     assert judge(log_of(**changes), FINISH, ASKED, PERIOD, 0.99)[1] == said
+
+
+def test_who_came_upright_too_late_had_no_time_to_rest():
+    """The last two seconds begin at 14 s; the trunk comes up a second later, or never."""
+    leaning = np.where(PERIOD * np.arange(STEPS) < 15.0, 30.0, 5.0)
+    for lean, said in (
+        (leaning, "the run ends at 16.00 s, 1.00 s after it came upright: "),
+        (30.0, ""),
+    ):
+        log = log_of(lean=lean)
+        columns, reason = judge(log, FINISH, ASKED, PERIOD, 0.99)
+        assert reason == "leans by 30 deg at the end"
+        told = too_short(log, FINISH, ASKED, columns, PERIOD)
+        assert told == said + "it is to rest for 2 s" * bool(said)
 
 
 def test_a_roll_that_is_counted():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotctl.metrics import finish
+from rotctl.metrics import finish, standing
 from rotctl.metrics.acrobatic import AcrobaticCriteria, on_hands, out_of_order, to
 from rotctl.metrics.columns import Arrays, floats, in_frame
 from rotctl.metrics.dive import DiveCriteria, entry
@@ -68,7 +68,11 @@ def _missing(
         if told == math.inf:
             return _before_it_is_told(criteria, commanded, columns, lasted)
         if begins < lasted:
-            return _resting("it began to stand up", begins, lasted, criteria.stand.rest)
+            rest, upright = criteria.stand.rest, standing.upright_from(log, criteria.stand) * period
+            began = _resting("it began to stand up", begins, lasted, rest)
+            return began or (
+                _resting("it came upright", upright, lasted, rest) if upright < lasted else ""
+            )
         waits = lasted - told  # for a squat, of which there is one in a revolution
         short = waits < criteria.roll.revolution_time
         return f"{waits:.2f} s after it was told to end: it still rolls" if short else ""

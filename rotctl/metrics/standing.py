@@ -81,6 +81,15 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
     )
 
 
+def upright_from(log: Arrays, criteria: StandingCriteria) -> int:
+    """The row from which on it is upright and still, to the end; the number of rows if none is."""
+    up = np.clip(floats(log, "trajectory/trunk_axes")[:, 2, 2], -1.0, 1.0)
+    lean = np.degrees([math.acos(one) for one in up.tolist()])
+    speed = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
+    off = np.flatnonzero((lean >= criteria.lean) | (speed >= criteria.speed))
+    return int(off[-1]) + 1 if len(off) else 0
+
+
 def on_others(log: Arrays, feet: tuple[str, ...]) -> np.ndarray:
     """(steps,) whether anything but these bodies touches the ground."""
     others = ~np.isin(np.asarray(log["contacts/body"]), _allowed(_names(log), feet))
