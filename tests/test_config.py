@@ -596,5 +596,5 @@ def test_a_setting_that_would_act_on_nothing_is_refused(overrides, message):
 @pytest.mark.parametrize("sign", ["", "+"])
 def test_keys_of_what_may_be_null_are_listed(sign):
     with pytest.raises(InputError) as error:
-        load(["behaviour=decline_crouch", f"{sign}behaviour.pace.halt=1"])
+        load(["behaviour=decline", f"{sign}behaviour.pace.halt=1"])
     assert "valid keys under behaviour.pace: keep, travel, own, " in str(error.value)

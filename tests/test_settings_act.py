@@ -89,7 +89,7 @@ CASES = {
         seconds=2.5,
     ),
     "pace that waits down a slope": Case(
-        ("behaviour=decline_crouch",),
+        ("behaviour=decline",),
         r"behaviour\.pace\.(approach|leave|back|patience|pose\..*)",
         seconds=2.5,
     ),

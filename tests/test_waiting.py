@@ -15,7 +15,7 @@ from rotctl.scenario import build
 
 @pytest.fixture(scope="module")
 def model():
-    return build(load(["behaviour=decline_crouch"])).known
+    return build(load(["behaviour=decline"])).known
 
 
 def settled(model, angles, waits):
@@ -38,17 +38,17 @@ def test_it_comes_as_far_as_it_waits_and_other_joints_stay(model):
 def test_an_angle_beyond_a_joints_stops_is_refused():
     """Such as one in degrees."""
     with pytest.raises(InputError) as error:
-        build(load(["behaviour=decline_crouch", "behaviour.pace.pose.knee=150"]))
+        build(load(["behaviour=decline", "behaviour.pace.pose.knee=150"]))
     assert str(error.value) == "behaviour.pace.pose.knee=150: this joint goes from -0.02 to 2.7 rad"
 
 
 def test_an_unknown_joint_is_named():
     with pytest.raises(InputError, match=r"behaviour\.pace\.pose names the unknown joint 'toe'"):
-        build(load(["behaviour=decline_crouch", "+behaviour.pace.pose.toe=1"]))
+        build(load(["behaviour=decline", "+behaviour.pace.pose.toe=1"]))
 
 
 def test_limbs_are_ready_before_it_is_braked_and_leave_when_it_does():
-    settings = replace(load(["behaviour=decline_crouch"]).behaviour.pace, leave=0.2)
+    settings = replace(load(["behaviour=decline"]).behaviour.pace, leave=0.2)
     pace, wait = Pace(settings, 0.4, 1.0), settings.wait
 
     def at(turn, late=-0.25):
@@ -64,7 +64,7 @@ def test_limbs_are_ready_before_it_is_braked_and_leave_when_it_does():
 @pytest.mark.parametrize("seed", [2000, 2001])
 def test_down_a_slope_it_waits_on_its_feet_with_its_head_up(seed):
     """Of the time that it is slow on the way, by where head, seat and feet are."""
-    scenario = build(load(["behaviour=decline_crouch", "duration=8", f"seed={seed}"]))
+    scenario = build(load(["behaviour=decline", "duration=8", f"seed={seed}"]))
     log = in_memory(scenario)[0].arrays()
     names = [name.decode() for name in log["model/body"].tolist()]
     feet = [names.index("foot_l"), names.index("foot_r")]
@@ -74,3 +74,14 @@ def test_down_a_slope_it_waits_on_its_feet_with_its_head_up(seed):
     upright = log["trajectory/trunk_axes"][slow, 2, 2]  # of the trunk's way to the head
     assert on_feet.mean() > 0.8
     assert np.median(upright) > -0.6, "its trunk hangs by 37 degrees at most"
+
+
+@pytest.mark.parametrize("seed", [2202, 2241, 2257])
+def test_on_hard_ground_it_comes_up_from_its_first_seat(seed):
+    """These sat down there while their phase took three times as long to come to the trunk."""
+    overrides = ["behaviour=decline", "physics=lockstep", "duration=2.6", f"seed={seed}"]
+    log = in_memory(build(load(overrides)))[0].arrays()
+    rising = (log["trajectory/phase"] > 0.8 * 2 * np.pi) & (log["trajectory/phase"] < 2 * np.pi)
+    assert rising.any()
+    assert log["trajectory/angular_velocity"][rising, 1].min() > 0.2 * 2 * np.pi
+    assert log["trajectory/phase"][-1] > 2 * np.pi
