@@ -1,7 +1,7 @@
 """When a stage ends: a small closed set of conditions on the state."""
 
 from dataclasses import field
-from math import atan2, radians, tau
+from math import atan2, cos, radians, sin, tau
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -65,18 +65,24 @@ class Near:
     Attributes:
         speed: of the centre of mass, at most [m/s]; any if None.
         turning: of the whole body about the axis that it turns about, at most [rev/s]; likewise.
+        level: the trunk's long axis is so far out of it at most [deg]: who sits, or stands on its
+            shoulders, lies down first; any if None.
     """
 
     kind: Literal["near"]
     angle: NonNegative
     speed: Positive | None = field(default=None, metadata=SPARSE)
     turning: Positive | None = field(default=None, metadata=SPARSE)
+    level: Annotated[Positive, Field(le=90.0)] | None = field(default=None, metadata=SPARSE)
 
     def check(self, model: Model, key: str) -> None:
         """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
+        steep = abs(float(scene.state.trunk_axes[2, 2]))
+        if self.level is not None and steep > sin(radians(self.level)):
+            return False
         momentum = scene.state.momentum
         velocity, turns = momentum.com_velocity, dot(scene.turning, momentum.angular_velocity)
         if self.speed is not None and dot(velocity, velocity) > self.speed**2:
@@ -84,6 +90,27 @@ class Near:
         if self.turning is not None and abs(turns) > tau * self.turning:
             return False
         return abs(scene.target - scene.turned) <= radians(self.angle)
+
+
+@validated(frozen=True, config=STRICT)
+class Leant:
+    """The trunk leans so far from upright, whichever way [deg]: 90 lies, 180 is head down.
+
+    Attributes:
+        after: not before so long in the stage [s].
+    """
+
+    kind: Literal["leant"]
+    angle: Annotated[NonNegative, Field(le=180.0)]
+    after: NonNegative
+
+    def check(self, model: Model, key: str) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, scene: Scene) -> bool:
+        """Whether the stage ends now."""
+        leant = float(scene.state.trunk_axes[2, 2]) <= cos(radians(self.angle))
+        return leant and scene.state.time - scene.begin.time >= self.after - 1e-9
 
 
 @validated(frozen=True, config=STRICT)
@@ -217,6 +244,7 @@ Until = Annotated[
     After
     | Turned
     | Near
+    | Leant
     | Low
     | Touches
     | Airborne
