@@ -17,7 +17,7 @@ def complaint(overrides):
     ("behaviour", "key"),
     [
         (["behaviour=press_up"], "behaviour.stages.1.held_out"),
-        (["behaviour=get_up"], "behaviour.ways.0.when.feet"),
+        (["behaviour=get_up"], "behaviour.ways.1.when.feet"),
         (["behaviour=back_flip"], "behaviour.stages.2.until.bodies"),
         (["behaviour=back_flip"], "behaviour.stages.2.tasks.lean.aim.bodies"),
         (["behaviour=stand_step"], "behaviour.tasks.balance.aim.bodies"),

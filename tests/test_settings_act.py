@@ -229,14 +229,17 @@ CASES = {
         r"behaviour\.again",
         seconds=3.0,
     ),
-    "ways": Case(("behaviour=get_up",), r"behaviour\.ways\.1\.when\.angle", seconds=0.05),
+    "ways": Case(("behaviour=get_up",), r"behaviour\.ways\.2\.when\.angle", seconds=0.05),
     "patience on a way": Case(
-        ("behaviour=get_up", "start=supine"), r"behaviour\.ways\.2\.patience", seconds=1.5
+        ("behaviour=get_up", "start=supine"), r"behaviour\.ways\.3\.patience", seconds=1.5
     ),
     "calm on the back": Case(
         ("behaviour=rock_back", "start=side"),
         r"behaviour\.stages\.0\.until\.turning",
         seconds=0.8,
+    ),
+    "thrown over the shoulders": Case(
+        ("behaviour=rock_back",), r"behaviour\.stages\.2\.until\.(after|angle)", seconds=1.0
     ),
     "striding into a cartwheel": Case(
         ("behaviour=cartwheel",),

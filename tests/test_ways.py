@@ -1,13 +1,13 @@
 """Ways of a chain: chosen by how the body is, as it begins and as a try comes to nothing."""
 
 from dataclasses import replace
-from math import cos, radians, sin
+from math import cos, radians, sin, tau
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from rotctl.behaviours.ways import FaceDown, Way
+from rotctl.behaviours.ways import FaceDown, Rolls, Way
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
@@ -15,8 +15,8 @@ from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.simulation.known import StateSettings
 
-PARTS = ("rock_back", "press_up", "roll_up", "at once")
-FIRST = (0, 4, 14, 17)  # stages of the parts of get_up
+PARTS = ("rock_back", "press_up", "roll_up", "at once", "ends rolling")
+FIRST = (0, 4, 14, 17, 20)  # stages of the parts of get_up
 UP = GettingUpCriteria("up", "getting_up", ("foot_l", "foot_r"), 2.0, 1.0, 0.8, 20.0, 0.25)
 UPRIGHT = 0.986  # [m] of an adult's centre of mass
 SQUAT = {
@@ -76,10 +76,10 @@ def test_who_sits_or_is_on_all_fours_takes_the_way_of_who_lies(pitch, part):
 
 def test_who_falls_takes_the_way_of_how_it_lies_then():
     """At three metres a second backwards nobody stays up."""
-    first, *others = load(["behaviour=get_up"]).behaviour.ways
+    rolls, first, *others = load(["behaviour=get_up"]).behaviour.ways
     hasty = replace(first, when=replace(first.when, speed=9.0))
     falling = replace(turned(0.0, {}), velocity=(-3.0, 0.0, 0.0))
-    log = simulated(state=falling, seconds=0.7, ways=(hasty, *others))
+    log = simulated(state=falling, seconds=1.2, ways=(rolls, hasty, *others))
     assert parts(log) == ["at once", "rock_back"]
 
 
@@ -91,11 +91,46 @@ def test_who_moves_through_a_squat_does_not_stand_up_at_once():
 def test_a_part_that_lasts_too_long_begins_again():
     log = simulated("start=supine", "seed=1", seconds=0.2, ways=(
         Way((3,), FaceDown("face_down", 1.0)), Way((1,), FaceDown("face_down", 1.0)),
-        Way((0, 2), patience=0.1),
+        Way((4,), FaceDown("face_down", 1.0)), Way((0, 2), patience=0.1),
     ))  # fmt: skip
     stage = log["command/stage"]
     again = log["trajectory/time"][np.flatnonzero(np.diff(stage) < 0) + 1]
     assert again == pytest.approx([0.11], abs=0.01)
+
+
+BALL = {
+    f"{joint}_{side}": angle
+    for joint, angle in {"hip_y": 2.2, "knee": 2.2, "shoulder_y": 1.0}.items()
+    for side in "lr"
+}
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_who_rolls_ends_the_roll(way):
+    """On its back in a ball, round at 0.8 rev/s and along at 1.5 m/s, either way."""
+    rolling = replace(
+        turned(-90.0, BALL), velocity=(way * 1.5, 0.0, 0.0), angular_velocity=(0.0, way * 5.0, 0.0)
+    )
+    assert parts(simulated(state=rolling)) == ["ends rolling"]
+
+
+def test_a_way_that_begins_with_a_roll_leads_across_the_trunks_left():
+    """On the back, the head towards -x, it is where the feet are."""
+    rolling = replace(turned(-90.0, BALL), angular_velocity=(0.0, 5.0, 0.0))
+    log = simulated(state=rolling)
+    assert log["command/axes"][-1, 0] == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("turning", "tilt", "met"),
+    [(0.3, 0.0, False), (0.5, 0.0, True), (-0.5, 0.0, True), (0.5, 10.0, True), (0.5, 20.0, False)],
+)
+def test_who_rolls_turns_about_the_trunks_level_left(turning, tilt, met):
+    left = np.array([0.0, cos(radians(tilt)), sin(radians(tilt))])
+    momentum = SimpleNamespace(angular_velocity=tau * turning * left)
+    axes = np.array([left * 0.0, left, left * 0.0]).T
+    state = SimpleNamespace(trunk_axes=axes, momentum=momentum)
+    assert Rolls("rolls", 0.4, 15.0).met(None, state) == met
 
 
 @pytest.mark.parametrize(("off", "met"), [(0.0, True), (55.0, True), (65.0, False), (180.0, False)])
@@ -109,7 +144,7 @@ def test_face_down_is_the_front_within_an_angle_of_straight_down(off, met):
 @pytest.mark.parametrize(
     ("ways", "said"),
     [
-        ("[{parts:[0,2,7]}]", "behaviour.ways.0.parts: no part 7; valid: 0 to 3"),
+        ("[{parts:[0,2,7]}]", "behaviour.ways.0.parts: no part 7; valid: 0 to 4"),
         ("[{parts:[0,2,0]}]", "behaviour.ways.0.parts: a part comes once on a way"),
         ("[{parts:[0]},{parts:[1]}]", "behaviour.ways.0: must have a when"),
         (
@@ -133,6 +168,6 @@ def test_nothing_goes_between_parts_that_ways_number():
 
 
 def test_a_later_part_of_a_way_does_not_begin_from_lying():
-    ways = "[{parts:[3],when:{kind:face_down,angle:60}},{parts:[0,1,2]}]"
+    ways = "[{parts:[3],when:{kind:face_down,angle:60}},{parts:[0,1,2,4]}]"
     with pytest.raises(InputError, match="behaviour.parts: 'press_up': press_up rolls about"):
         build(load(["behaviour=get_up", f"behaviour.ways={ways}"]))

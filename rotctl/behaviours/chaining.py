@@ -130,7 +130,7 @@ class Chain:
         inner = self._first.begin(pitch, state)
         memory = ChainMemory(way, 0, inner, heading, state.time, height)
         first = self._ways[way].parts[0]
-        return self._begun(way, first, memory, state) if first else memory
+        return self._begun(way, first, memory, state, anew=True) if first else memory
 
     @property
     def _first(self) -> Behaviour[Any]:
@@ -144,7 +144,7 @@ class Chain:
         memory = before._replace(inner=inner, rested=rested)
         if self._failed(before.inner, memory, state):
             way = ways.chosen(self._ways, self._model, state)
-            return self._begun(way, self._ways[way].parts[0], memory, state)
+            return self._begun(way, self._ways[way].parts[0], memory, state, anew=True)
         following = self._following(memory)
         if following is not None and self._over(memory, state):
             return self._begun(memory.way, following, memory, state)
@@ -176,10 +176,12 @@ class Chain:
         rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period
         return rested and part.at_last(memory.inner) if own is None else own
 
-    def _begun(self, way: int, number: int, memory: ChainMemory, state: State) -> ChainMemory:
+    def _begun(
+        self, way: int, number: int, memory: ChainMemory, state: State, anew: bool = False
+    ) -> ChainMemory:
         settings = self._settings.parts[number].behaviour
         about = settings.roll_about
-        heading = self._facing(memory, state) + (180.0 if about == "right" else 0.0)
+        heading = self._facing(memory, state, anew) + (180.0 if about == "right" else 0.0)
         frame = frame_of(about, heading, getattr(settings, "turn_about", "left"))
         begun = ChainMemory(way, number, None, heading, state.time, self._height(state))
         behaviour: Behaviour[Any] = self._part(begun)
@@ -201,14 +203,16 @@ class Chain:
             and self._height(state) > rest.height * memory.height
         )
 
-    def _facing(self, memory: ChainMemory, state: State) -> float:
+    def _facing(self, memory: ChainMemory, state: State, anew: bool) -> float:
         """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they.
 
-        With no foot on the ground, say on its back, it is where the part that ends was heading;
-        who rolls backward heads where the back points.
+        With no foot on the ground, say on its back, it is where the part that ends was heading,
+        or, where a way begins anew, across the trunk's left; who rolls backward heads where the
+        back points.
         """
         if self._feet.isdisjoint(state.contacts.body.tolist()):
-            fronts = [self._front(memory, state)]
+            x, y, _ = state.trunk_axes[:, 1].tolist()
+            fronts = [(y, -x)] if anew else [self._front(memory, state)]
         else:
             fronts = [forward(state, foot) for foot in sorted(self._feet)]
         return degrees(atan2(fsum(y for _, y in fronts), fsum(x for x, _ in fronts)))

@@ -1,7 +1,7 @@
 """Ways of a chain: which of its parts follow each other, by how the body is as it begins."""
 
 from dataclasses import field
-from math import cos, radians
+from math import cos, radians, sin, tau
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -69,7 +69,30 @@ class OnFeet:
         return upright and support.outside(corners, (x, y)) <= self.out
 
 
-Posture = Annotated[FaceDown | OnFeet, Field(discriminator="kind")]
+@validated(frozen=True, config=STRICT)
+class Rolls:
+    """It still rolls, forward or backward: the whole body turns about the trunk's left.
+
+    Attributes:
+        turning: so fast at least, whichever way [rev/s].
+        tilt: of the trunk's left out of the level at most [deg].
+    """
+
+    kind: Literal["rolls"]
+    turning: Positive
+    tilt: Annotated[Positive, Field(le=90.0)]
+
+    def check(self, model: Model, key: str) -> None:
+        """Nothing can be wrong."""
+
+    def met(self, model: Model, state: State) -> bool:
+        """Whether it is so."""
+        left = state.trunk_axes[:, 1]
+        level = abs(float(left[2])) <= sin(radians(self.tilt))
+        return level and abs(dot(left, state.momentum.angular_velocity)) >= tau * self.turning
+
+
+Posture = Annotated[FaceDown | OnFeet | Rolls, Field(discriminator="kind")]
 
 
 @validated(frozen=True, config=STRICT)
