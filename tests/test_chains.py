@@ -342,6 +342,22 @@ def test_the_next_part_begins_after_a_rest(stands):
     assert summary["parts_begun"] == 3
 
 
+def test_a_rest_counts_from_the_last_stage_on():
+    """`gather` stands still while it has its weight on one foot, and is not over then."""
+    more = ["behaviour.between=null", "behaviour.rest.seconds=0.3", "behaviour.rest.speed=1.0"]
+    log, _ = simulated(chain("gather", "stand", more=[*more, "seed=2000", "duration=3.5"]))
+    stages, times = log["command/stage"], log["trajectory/time"]
+    last, following = (times[stages == stage][0] for stage in (4, 5))
+    assert last > 2.0  # two feet are put down before it
+    assert following - last == pytest.approx(0.3, abs=0.02)
+
+
+def test_feet_and_arms_between_two_cartwheels_are_as_at_the_start():
+    made = load(["behaviour=cartwheel_twice"])
+    names = [part.behaviour.name for part in made.behaviour.parts]
+    assert names == ["cartwheel", "gather", "raise", "cartwheel"]
+
+
 def test_a_part_heads_where_the_feet_point(stands):
     _, log, _ = stands
     axes = log["command/axes"]

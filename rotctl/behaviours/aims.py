@@ -12,6 +12,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.attitudes import Bow, Face, Plane, Upright
 from rotctl.behaviours.balance import Capture, Lunge
+from rotctl.behaviours.gathering import Beside
 from rotctl.behaviours.heading import Heading
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.pivoting import Bring
@@ -115,7 +116,8 @@ Aim = Annotated[
     | Shift
     | Carry
     | Place
-    | Stride,
+    | Stride
+    | Beside,
     Field(discriminator="law"),
 ]
 
@@ -144,6 +146,7 @@ SERVES: dict[type, tuple[str, ...]] = {
     Carry: ("linear",),
     Place: ("point",),
     Stride: ("point",),
+    Beside: ("point",),
 }
 """Kinds of task that an aim is for."""
 

@@ -140,8 +140,9 @@ class Chain:
         """Memory now; the next part begins where the present one is over, or a try failed."""
         behaviour: Behaviour[Any] = self._part(before)
         inner = behaviour.advance(before.inner, _since(before, state))
-        rested = before.rested + self._period if self._rests(before, state) else 0.0
-        memory = before._replace(inner=inner, rested=rested)
+        memory = before._replace(inner=inner)
+        rested = before.rested + self._period if self._rests(memory, state) else 0.0
+        memory = memory._replace(rested=rested)
         if self._failed(before.inner, memory, state):
             way = ways.chosen(self._ways, self._model, state)
             return self._begun(way, self._ways[way].parts[0], memory, state, anew=True)
@@ -174,7 +175,7 @@ class Chain:
         own = part.over(memory.inner, _since(memory, state))
         # One step more than its rest, so that whoever looks at its last rows sees the whole of it.
         rested = memory.rested > self._settings.rest.seconds + 0.5 * self._period
-        return rested and part.at_last(memory.inner) if own is None else own
+        return rested if own is None else own
 
     def _begun(
         self, way: int, number: int, memory: ChainMemory, state: State, anew: bool = False
@@ -192,6 +193,9 @@ class Chain:
         return self._made(memory.part, memory.heading)
 
     def _rests(self, memory: ChainMemory, state: State) -> bool:
+        part = self._part(memory)
+        if isinstance(part, Rolling) or not part.at_last(memory.inner):
+            return False
         rest, momentum = self._settings.rest, state.momentum
         touching = set(state.contacts.body.tolist())
         velocity = momentum.com_velocity
