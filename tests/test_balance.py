@@ -255,6 +255,31 @@ def test_who_rests_with_feet_far_apart_brings_them_together(scenario, standing, 
         assert (aim.next(scene) != step) == (speed == 0.0 and 0.0 < gather < apart)
 
 
+@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize(
+    ("turned", "short", "spin", "steps"),
+    [(50.0, 20.0, 0.0, True), (30.0, 20.0, 0.0, False), (50.0, 5.0, 0.0, False)]
+    + [(50.0, 20.0, 1.0, False), (50.0, 360.0, 0.0, False)],
+    ids=["short", "hips turn on", "there", "still turns", "a whole turn off"],
+)
+def test_who_rests_short_of_its_turn_steps_with_the_foot_that_is_turned_furthest(
+    scenario, standing, side, turned, short, spin, steps
+):
+    """Its hip turned by so much [deg]; one turn more or less is the same attitude."""
+    names, foot = scenario.model.joint_names, feet(scenario)[side]
+    hip = names.index(f"hip_z_{'lr'[side]}")
+    standing.qpos[scenario.model.angles][hip] = np.radians(turned)
+    mujoco.mj_forward(scenario.model.mj, standing)
+    low = max(support.lowest_end(scenario.model, standing, one)[2] for one in feet(scenario))
+    standing.qpos[2] -= low + 0.002
+    scene = scene_of(scenario, standing, spin=(0.0, 0.0, spin))
+    scene.target, scene.turned = np.radians(360.0), np.radians(360.0 - short)
+    assert {*feet(scenario)} <= {*scene.state.contacts.body.tolist()}
+    assert law(scenario).next(scene) == Step()
+    step = replace(law(scenario), twist=40.0).next(scene)
+    assert step.swing == (foot if steps else 0)
+
+
 @pytest.mark.parametrize(("way", "speed"), [(0.4, 0.0), (-0.2, 1.5), (0.0, -2.0)])
 def test_who_does_as_a_swing_is_told_is_at_rest_there_in_time(way, speed):
     """The law over and again is the cubic from here to rest there, as that is the least effort."""

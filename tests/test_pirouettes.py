@@ -1,6 +1,7 @@
 """Jumps that turn about the upright, and what they are judged by."""
 
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from rotctl.metrics.flip import judge, longest_flight, turn
 from rotctl.run import in_memory
 from rotctl.scenario import build
 from rotctl.schema import check
+from rotctl.simulation.episode import Episode
 
 PERIOD = 1 / 240
 
@@ -107,3 +109,36 @@ def test_one_and_a_half_turns_stay_folded_for_longer():
         law = Flight(flight, scenario.model, frame, np.radians(target), "flight")
         held[target] = law.tucking.held(0.15)
     assert held[360.0] < 1.0 == held[540.0]
+
+
+def launched(seed, dropped=()):
+    """Momentum about up at take-off [kg m2/s], without some of the launch's tasks."""
+    words = ["behaviour=pirouette", "behaviour.target_excursion=540", "plant=varied"]
+    config = load([*words, f"seed={seed}", "duration=2"])
+    behaviour = config.behaviour
+    stages = [
+        replace(one, tasks={name: task for name, task in one.tasks.items() if name not in dropped})
+        for one in behaviour.stages
+    ]
+    episode = Episode(build(replace(config, behaviour=replace(behaviour, stages=tuple(stages)))))
+    moment = next(one for one in episode if one.signals.stage == 3)
+    return float(moment.truth.momentum.angular[2])
+
+
+def test_toes_that_slip_off_are_pressed_down_again():
+    """What has lost the ground by a millimetre pushes the turn no further."""
+    seeds = (2009, 2010, 2012, 2038)
+    kept, lost = (np.mean([launched(s, dropped) for s in seeds]) for dropped in ((), ("toe",)))
+    assert kept > lost + 0.4
+
+
+@pytest.mark.parametrize("behaviour", ["pirouette", "pirouette_one_foot"])
+@pytest.mark.parametrize("seed", [2005, 2032])
+def test_a_foot_that_hovers_at_the_start_does_not_turn(behaviour, seed):
+    """No contact is found under it for a tenth of a second, and nothing else holds it."""
+    config = load([f"behaviour={behaviour}", "plant=varied", f"seed={seed}", "duration=1"])
+    episode = Episode(build(config))
+    feet = [episode.data.model.body(f"foot_{side}").id for side in "lr"]
+    fronts = [episode.data.xmat[feet][:, (0, 3)].copy() for _ in islice(episode, 96)]
+    yaw = np.degrees(np.unwrap([np.arctan2(one[:, 1], one[:, 0]) for one in fronts], axis=0))
+    assert np.abs(yaw - yaw[0]).max() < 5.0

@@ -113,7 +113,7 @@ def test_what_is_asked_for_has_its_units():
 
 WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are for all the same
     "Bow.angle", "Face.share", "Turn.most", "Capture.gain", "Capture.lunge", "Stepping.spin",
-    "Stepping.away",
+    "Stepping.away", "Stepping.twist",
     "Lean.gain", "Launch.gain", "Whirl.amount", "Poise.gain", "Carry.gain", "Carry.angles",
     "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Tilted.angle",
     "Launched.knee", "Leaves.angle", "CatchSettings.free", "CatchSettings.gain",

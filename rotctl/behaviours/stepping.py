@@ -5,6 +5,7 @@ swing foot and goes to where that point will be when the foot is down
 (`rotctl.behaviours.footholds`); pressure stays under the other foot meanwhile.
 """
 
+from dataclasses import field
 from functools import lru_cache
 from math import cos, pi, sin
 from typing import Literal
@@ -12,7 +13,7 @@ from typing import Literal
 import mujoco
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours import footholds, support, swing_foot
+from rotctl.behaviours import footholds, stance, support, swing_foot
 from rotctl.behaviours.scene import Scene, Step
 from rotctl.behaviours.support import Facing
 from rotctl.behaviours.swinging import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
@@ -20,11 +21,10 @@ from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings import SPARSE, STRICT, NonNegative, Positive
 
 DOWN = 0.5  # of a swing, from which on a touch ends it
 LATE = 1.5  # swings, after which one ends that met no ground
-CALM = 0.2  # [m/s] of the centre of mass: it rests
 
 
 @validated(frozen=True, config=STRICT)
@@ -52,6 +52,9 @@ class Stepping:
             by `aside` and `narrow` in place of that.
         gather: who has come to rest with feet further apart brings them together [m], more than
             `width`; 0 lets them.
+        twist: who has come to rest off its target, with a foot turned further than this from where
+            the pelvis faces, steps with that foot [deg]: a hip is at its stop there, and the trunk
+            turns no further. For turns about up; 0 lets it.
     """
 
     law: Literal["step"]
@@ -70,6 +73,7 @@ class Stepping:
     narrow: NonNegative = 0.0
     away: NonNegative = 0.0
     gather: NonNegative = 0.0
+    twist: NonNegative = field(default=0.0, metadata=SPARSE)
 
     def __post_init__(self) -> None:
         for name in ("aside", "narrow"):
@@ -105,9 +109,11 @@ class Stepping:
         corners = support.hull(support.ends(model, state.data, (left, right)))
         hangs = any(support.lifted(model, state, foot) for foot in (left, right))
         stays = support.outside(corners, footholds.capture_point(self, scene)) < self.margin
-        if not hangs and stays and not self._sprawls(scene):
+        settled = stays and not hangs
+        twisted = stance.twisted(self, scene, touching) if settled else 0
+        if settled and not twisted and not stance.sprawls(self, scene):
             return step
-        swing = swing_foot.chosen(self, scene, touching)
+        swing = twisted or swing_foot.chosen(self, scene, touching)
         return Step(swing, right if swing == left else left, state.time)
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
@@ -128,18 +134,6 @@ class Stepping:
         over = self.lift * sin(pi * gone) - (UNDER if gone > REACH_DOWN else 0.0)
         task["target"][:3] = [px, py, scene.model.ground.height(px, py) + self.height + over]
         task["velocity"] = [vx, vy, self.lift * pi / self.time * cos(pi * gone)]
-
-    def _sprawls(self, scene: Scene) -> bool:
-        """Whether it has come to rest with its feet further apart than people stand."""
-        if not self.gather:
-            return False
-        model, state = scene.model, scene.state
-        vx, vy, _ = state.momentum.com_velocity.tolist()
-        (lx, ly), (rx, ry) = (
-            support.middle(support.ends(model, state.data, (foot,))) for foot in self.feet(model)
-        )
-        apart = (lx - rx) ** 2 + (ly - ry) ** 2 > self.gather**2
-        return apart and vx * vx + vy * vy < CALM**2
 
     def feet(self, model: Model) -> tuple[int, int]:
         """MuJoCo ids of the left foot and the right one."""
