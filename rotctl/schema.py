@@ -29,6 +29,7 @@ from rotctl.written import to_dict
 PROSE = ("description", "source", "said")  # may be long
 LONGEST_TEXT = 200
 LARGEST = 1e13  # in any unit: squares and cubes of it are numbers still
+SMALLEST = 1e-30  # but for 0: so are those of what is divided by it
 
 
 @validated(frozen=True, config=STRICT)
@@ -127,5 +128,8 @@ def _printable(text: str) -> bool:
 
 
 def _absurd_number(parts: Way, value: Any) -> str:
-    large = isinstance(value, int | float) and abs(value) > LARGEST and parts != ("seed",)
-    return f"must be at most {LARGEST:g} in size" if large else ""
+    if not isinstance(value, int | float) or parts == ("seed",):
+        return ""
+    if abs(value) > LARGEST:
+        return f"must be at most {LARGEST:g} in size"
+    return f"must be 0 or at least {SMALLEST:g} in size" if 0.0 < abs(value) < SMALLEST else ""

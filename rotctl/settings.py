@@ -14,14 +14,15 @@ MOST_PARTS = 20  # of a chain of behaviours
 def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:
     if pair[0] > pair[1]:
         raise ValueError(f"the range [{pair[0]:g}, {pair[1]:g}] is empty: low must not exceed high")
-    return pair
+    return pair if pair[0] < pair[1] else (pair[0], pair[0])  # [0, -0] has no width
 
 
 # Strict: a whole number will do for a float, but "1.0" or true will not.
 Finite = Annotated[float, Strict(), AllowInfNan(False)]
 Positive = Annotated[float, Strict(), AllowInfNan(False), Field(gt=0)]
-NonNegative = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0)]
-Fraction = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0, le=1)]
+# By abs, -0 is 0: it is the same number, and would be another run.
+NonNegative = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0), AfterValidator(abs)]
+Fraction = Annotated[NonNegative, Field(le=1)]
 Vector = tuple[Finite, Finite, Finite]
 NonNegativeVector = tuple[NonNegative, NonNegative, NonNegative]
 Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]

@@ -236,6 +236,8 @@ def plain():
         ("character.root_height", 1e9, "1000000000.0: must be less than or equal to 10"),
         ("behaviour.poses.a.knee", 1e9, "1000000000.0: must be less than or equal to 10"),
         ("behaviour.speed", 1e308, "1e+308: must be at most 1e+13 in size"),
+        ("character.mass", 1e-300, "1e-300: must be 0 or at least 1e-30 in size"),
+        ("behaviour.speed", -5e-324, "-5e-324: must be 0 or at least 1e-30 in size"),
         # Texts.
         ("behaviour.name", "", '"": must not be empty'),
         (

@@ -98,6 +98,16 @@ def test_draw_stays_in_its_ranges_and_fills_them(world):
     assert all(s.velocity[2] == 0.0 for s in drawn)
 
 
+@pytest.mark.parametrize("override", ["start.speed_x=[0.0,-0.0]", "start.scatter=-0.0"])
+def test_what_is_zero_with_a_sign_is_zero(override):
+    begun = [
+        Episode(scenario.build(load(["behaviour=stand", more]))).data
+        for more in (override, override.replace("-0.0", "0.0"))
+    ]
+    assert begun[0].qpos.tobytes() == begun[1].qpos.tobytes()
+    assert begun[0].qvel.tobytes() == begun[1].qvel.tobytes()
+
+
 def test_same_seed_same_state(world):
     def first_state(seed):
         made = scenario.build(replace(world.config, seed=seed, start=RANGES))
