@@ -16,7 +16,7 @@ from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.dive import WATCHED, DiveCriteria
 from rotctl.metrics.judge import ChainCriteria, Criteria
 from rotctl.schema import Config
-from rotctl.settings import ends
+from rotctl.settings import Vector, ends
 
 ROUNDING = 1e-9  # [s]
 
@@ -29,6 +29,7 @@ def require_fit(config: Config, model: Model) -> None:
     """
     behaviour = config.behaviour
     _require_judged(behaviour, config.criteria, model)
+    _require_weight(behaviour, config.physics.gravity)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
         raise InputError(
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
@@ -47,6 +48,16 @@ def require_fit(config: Config, model: Model) -> None:
         raise InputError(
             f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
             "none: control goes on with the model that it knows"
+        )
+
+
+def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
+    """Who stands, steps or comes down goes by the time of a fall, and only a roll turns without."""
+    rolls_on = isinstance(behaviour, RollingSettings) and behaviour.finish is None
+    if gravity[2] >= 0.0 and not rolls_on:
+        raise InputError(
+            f"physics.gravity.2={gravity[2]:g}: must be less than 0, as behaviour={behaviour.name} "
+            "stands or falls by its weight; a roll without a finish turns without it"
         )
 
 

@@ -18,6 +18,7 @@ def run_id(*overrides):
 def test_the_same_config_is_the_same_run():
     assert re.fullmatch("[0-9a-f]{12}", run_id())
     assert run_id() == run_id("seed=0", "start=tucked") == run_id("duration=20")
+    assert run_id() == run_id("plant.mass=-0.0")
 
 
 def test_whatever_changes_the_run_changes_its_id():
@@ -56,6 +57,16 @@ def test_the_start_is_drawn_from_the_seed_within_its_ranges():
 @pytest.mark.parametrize(
     ("overrides", "message"),
     [
+        (
+            ["behaviour=back_flip", "physics.gravity=[0,0,0]"],
+            "physics.gravity.2=0: must be less than 0, as behaviour=back_flip stands or falls "
+            "by its weight; a roll without a finish turns without it",
+        ),
+        (
+            ["behaviour=chain", "behaviour.parts=[stand,stand]", "physics.gravity=[0,0,9.81]"],
+            "physics.gravity.2=9.81: must be less than 0, as behaviour=chain stands or falls "
+            "by its weight; a roll without a finish turns without it",
+        ),
         (
             ["controller.solver=foo"],
             "controller.solver='foo' is unknown; valid: boxqp, osqp, qpsolvers:<name> "
