@@ -14,7 +14,7 @@ from rotctl.choosing import package
 from rotctl.errors import InputError
 from rotctl.listing import choices
 from rotctl.overrides import is_choice
-from rotctl.plain import NOTHING, Way, dotted, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, keys_under, member, put, way
 from rotctl.schema import check
 
 
@@ -64,9 +64,7 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
             last = depth + 1 == len(parts) and isinstance(part, str) and isinstance(place, dict)
             if sets and last and _may_add(valid, parts, override.value()):
                 return f"{key} is not there yet; write +{key}=VALUE"
-            none = f"none, it is {'null' if place is None else 'a value'}"
-            some = list(place) if isinstance(place, dict) else [none]
-            return unknown_key(key, dotted(parts[:depth]), some)
+            return unknown_key(key, dotted(parts[:depth]), keys_under(place))
         place = inner
     if override.is_delete():
         return ""

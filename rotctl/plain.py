@@ -72,3 +72,12 @@ def put(data: Any, parts: Way, value: Any) -> Any:
         return items
     members = data if isinstance(data, dict) else {}
     return {**members, head: put(members.get(head), rest, value)}
+
+
+def keys_under(place: Any) -> list[str]:
+    """The keys under a place in plain data, of a list its numbers; where there are none, why."""
+    if isinstance(place, dict):
+        return list(place)
+    if isinstance(place, list | tuple) and place:
+        return [f"0 to {len(place) - 1}"]
+    return [f"none, it is {'null' if place is None else 'a value'}"]

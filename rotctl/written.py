@@ -12,7 +12,7 @@ import yaml
 
 from rotctl.checked import unknown_key
 from rotctl.errors import InputError
-from rotctl.plain import NOTHING, dotted, member, way
+from rotctl.plain import NOTHING, dotted, keys_under, member, way
 from rotctl.same import kept
 from rotctl.settings import SPARSE
 
@@ -66,8 +66,7 @@ def part_to_yaml(settings: "DataclassInstance", key: str) -> str:
     for depth, part in enumerate(parts):
         inner = member(place, part)
         if inner is NOTHING:
-            valid = list(place) if isinstance(place, dict) else ["none, it is a value"]
-            raise InputError(unknown_key(key, dotted(parts[:depth]), valid))
+            raise InputError(unknown_key(key, dotted(parts[:depth]), keys_under(place)))
         place = inner
     return _yaml(json.dumps({parts[-1]: place})) if parts else to_yaml(settings)
 

@@ -125,7 +125,7 @@ def test_a_key_that_may_be_missing_can_be_removed():
         (
             "controller.tasks.linear.damping.x=3",
             "unknown key 'controller.tasks.linear.damping.x'; valid keys under "
-            "controller.tasks.linear.damping: none, it is a value",
+            "controller.tasks.linear.damping: 0 to 2",
         ),
         ("~seed", "seed: missing, it cannot be left out"),
         ("seed=???", "seed: missing, give it as seed=VALUE"),
