@@ -6,10 +6,12 @@ path that the user names may be one.
 """
 
 import errno
+import fcntl
 import os
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from io import FileIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -104,7 +106,7 @@ def replace(path: Path, content: bytes, *, durable: bool = False) -> None:
     """
     with _beside(path, durable) as (_, file):
         while content:
-            content = content[os.write(file, content) :]
+            content = content[file.write(content) or 0 :]
 
 
 @contextmanager
@@ -118,37 +120,59 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[Path]:
 
 
 @contextmanager
-def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, int]]:
-    """That file, and its descriptor."""
+def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, FileIO]]:
+    """That file, and it opened; whoever else writes to `path` meanwhile waits."""
     part = path.with_name(f"{path.name}.part")
     try:
-        try:  # before it is made: an interrupt may come right after
-            file = _new(part)
+        with _new(part) as file:
             try:
                 yield part, file
                 if durable:
-                    os.fsync(file)
-            finally:
-                os.close(file)
-            os.replace(part, path)
-        except BaseException:
-            with suppress(OSError):
-                part.unlink(missing_ok=True)
-            raise
+                    os.fsync(file.fileno())
+                os.replace(part, path)
+            except BaseException:
+                with suppress(OSError):
+                    part.unlink(missing_ok=True)
+                raise
         if durable:
             sync(path.parent)
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def _new(part: Path) -> int:
-    """A file made anew, after what a kill left behind is removed: nobody can have put a link."""
-    flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+def _new(part: Path) -> FileIO:
+    """A file made anew, where nobody can have put a link, and locked: it is not left over."""
+    while True:
+        try:
+            file = open(part, "xb", buffering=0)  # noqa: SIM115
+        except FileExistsError:
+            _remove_left(part)
+            continue
+        if _held(file, part):
+            return file
+        file.close()
+
+
+def _remove_left(part: Path) -> None:
+    """Remove what a kill left behind, or wait for the process that is writing it."""
     try:
-        return os.open(part, flags, 0o666)
-    except FileExistsError:
+        left = os.open(part, os.O_WRONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:  # a link or a pipe, which nobody of ours made
         part.unlink(missing_ok=True)
-        return os.open(part, flags, 0o666)
+        return
+    with open(left, "wb", buffering=0) as file:
+        if _held(file, part):
+            part.unlink(missing_ok=True)
+
+
+def _held(file: FileIO, part: Path) -> bool:
+    """Lock a file; whether it is still the one at `part`."""
+    with suppress(OSError):  # a disk that knows no locks
+        fcntl.flock(file, fcntl.LOCK_EX)
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), os.stat(part, follow_symlinks=False))
+    except FileNotFoundError:
+        return False
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """Files are plain ones where it matters, and nothing outside a folder is read or written."""
 
+import multiprocessing
 import os
 import shutil
 import socket
@@ -118,14 +119,35 @@ def test_what_was_there_stays_where_writing_fails(folder):
     assert sorted(os.listdir(folder)) == ["a", "b.part"]
 
 
-def test_an_interrupt_leaves_nothing_wherever_it_comes(folder, monkeypatch):
-    def interrupt(_):
+def test_an_interrupt_leaves_nothing(folder, monkeypatch):
+    def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(files.os, "close", interrupt)
+    monkeypatch.setattr(files.os, "replace", interrupt)
     with pytest.raises(KeyboardInterrupt):
         files.replace(folder / "a", b"new")
+    with pytest.raises(KeyboardInterrupt), files.replacing(folder / "a"):
+        raise KeyboardInterrupt
     assert os.listdir(folder) == []
+
+
+def test_two_that_write_the_same_file_at_once_each_put_a_whole_one(folder):
+    contents = [letter * 300_000 for letter in (b"a", b"b", b"c")]
+
+    def writes(content):
+        for _ in range(60):
+            files.replace(folder / "a", content)
+
+    writers = [
+        multiprocessing.get_context("fork").Process(target=writes, args=(c,)) for c in contents
+    ]
+    for writer in writers:
+        writer.start()
+    while any(writer.is_alive() for writer in writers):
+        if (folder / "a").exists():
+            assert (folder / "a").read_bytes() in contents
+    assert [writer.exitcode for writer in writers] == [0, 0, 0]
+    assert os.listdir(folder) == ["a"]
 
 
 def test_a_folder_that_stays_empty_goes_again(folder):
