@@ -76,10 +76,16 @@ def test_down_a_slope_it_waits_on_its_feet_with_its_head_up(seed):
     assert np.median(upright) > -0.6, "its trunk hangs by 37 degrees at most"
 
 
-@pytest.mark.parametrize("seed", [2202, 2241, 2257])
-def test_on_hard_ground_it_comes_up_from_its_first_seat(seed):
+@pytest.mark.parametrize(
+    ("row", "seed"),
+    [
+        *(("decline", seed) for seed in (2202, 2241, 2257)),
+        *(("forward_roll_2", seed) for seed in (3001, 3004, 3011)),
+    ],
+)
+def test_on_hard_ground_it_comes_up_from_its_first_seat(row, seed):
     """These sat down there while their phase took three times as long to come to the trunk."""
-    overrides = ["behaviour=decline", "physics=lockstep", "duration=2.6", f"seed={seed}"]
+    overrides = [f"behaviour={row}", "physics=lockstep", "duration=2.6", f"seed={seed}"]
     log = in_memory(build(load(overrides)))[0].arrays()
     rising = (log["trajectory/phase"] > 0.8 * 2 * np.pi) & (log["trajectory/phase"] < 2 * np.pi)
     assert rising.any()
