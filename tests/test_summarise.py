@@ -109,9 +109,13 @@ def test_the_command_prints_markdown_and_writes_csv(sweep, capsys):
     stdout, stderr = capsys.readouterr()
     lines = stdout.splitlines()
     assert stderr == ""
-    assert lines[0].startswith("| behaviour              | config.duration | n | success [95 %]  |")
+    assert lines[0].startswith("| behaviour              | n | success [95 %]  |")
     assert set(lines[1]) == set("| -")
-    assert lines[2].startswith("| forward_roll_1_on_head | 2               | 3 | 100 % [44, 100] |")
+    assert lines[2].startswith("| forward_roll_1_on_head | 3 | 100 % [44, 100] |")
+    (same,) = [line for line in lines if line.startswith("The same in all runs: ")]
+    assert "duration 2, " in same
+    assert "config.duration" not in same
+    assert "criteria" not in stdout  # words, of which no median is
     assert lines[-2:] == [str(sweep / "summary.csv"), str(sweep / "groups.csv")]
     rows = list(csv.DictReader(io.StringIO((sweep / "summary.csv").read_text())))
     assert len(rows) == 6
@@ -139,6 +143,15 @@ def test_quartiles_are_those_of_the_runs(made):
     assert row["revolutions_q25"] == np.percentile(values, 25)
     assert row["revolutions_median"] == np.median(values)
     assert row["revolutions_q75"] == np.percentile(values, 75)
+
+
+def test_one_key_stands_in_the_table_and_what_is_the_same_below_it():
+    row = {"run_id": "a", "status": "done", "behaviour": "roll", "plant": "varied", "seed": 0}
+    rows = pd.DataFrame([row | {"success": True, "code": "", "kind": "rolling", "top": 1.0}])
+    found = grouped(Table(rows, ["behaviour", "plant", "seed"], ["kind", "top"], []))
+    assert found.metrics == ["top"]
+    assert markdown(found).splitlines()[0] == "| behaviour | n | success [95 %]  |"
+    assert markdown(found).endswith("The same in all runs: plant varied, top 1.")
 
 
 def test_quartiles_are_of_the_values_that_are_there():

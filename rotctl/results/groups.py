@@ -37,7 +37,7 @@ class Groups:
         rows: the keys, `n`, `succeeded`, `success_rate`, `success_low`, `success_high`,
             `no_result`, and `_q25`, `_median`, `_q75` of every metric.
         keys: the columns that name a group.
-        metrics: those that were measured.
+        metrics: those that were measured and are no words, such as the kind of the criteria.
         notes: what a reader should know, one line each.
     """
 
@@ -70,17 +70,27 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         notes.append(f"made by {len(codes)} versions of the code, {how}: {'; '.join(codes)}")
         if not mixed and "code" not in keys:
             keys.append("code")
+    metrics = [metric for metric in table.metrics if not _words(table.rows[metric])]
     rows = [
-        dict(zip(keys, name, strict=True)) | measured for name, measured in _measured(table, keys)
+        dict(zip(keys, name, strict=True)) | measured
+        for name, measured in _measured(table, keys, metrics)
     ]
-    return Groups(pd.DataFrame(rows), keys, table.metrics, notes)
+    return Groups(pd.DataFrame(rows), keys, metrics, notes)
 
 
-def _measured(table: Table, keys: list[str]) -> Iterator[tuple[Name, dict[str, Any]]]:
+def _words(column: pd.Series) -> bool:
+    """Whether no run has a number, and one has something else."""
+    numbers = pd.to_numeric(column, errors="coerce").notna().any()
+    return bool(column.notna().any() and not numbers)
+
+
+def _measured(
+    table: Table, keys: list[str], metrics: Sequence[str]
+) -> Iterator[tuple[Name, dict[str, Any]]]:
     """Keys of each group and how its runs did; read into arrays once, as groups may be many."""
     done = (table.rows["status"] == DONE).to_numpy()
     success = table.rows["success"].eq(True).to_numpy()  # may be missing
-    numbers = [pd.to_numeric(table.rows[metric], errors="coerce") for metric in table.metrics]
+    numbers = [pd.to_numeric(table.rows[metric], errors="coerce") for metric in metrics]
     values = np.array([column.to_numpy(dtype=float) for column in numbers]).T
     for name, runs in _in_order(table.rows, keys):
         with_result = runs[done[runs]]
@@ -94,8 +104,8 @@ def _measured(table: Table, keys: list[str]) -> Iterator[tuple[Name, dict[str, A
             "success_high": high,
             "no_result": len(runs) - n,
         }
-        if table.metrics:
-            for metric, found in zip(table.metrics, _quartiles(values[with_result]), strict=True):
+        if metrics:
+            for metric, found in zip(metrics, _quartiles(values[with_result]), strict=True):
                 row |= {f"{metric}_{q}": x for q, x in zip(QUARTILES, found, strict=True)}
         yield name, row
 
@@ -129,7 +139,7 @@ def _quartiles(values: Array) -> Array:
 def markdown(groups: Groups) -> str:
     """The groups as a Markdown table: rates in percent, metrics as median [quartiles].
 
-    Metrics with one value throughout are told below it, to keep it narrow.
+    Keys but the first, and metrics, with one value throughout are told below it, to keep it narrow.
     """
     missing = bool(groups.rows["no_result"].any())
     rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
@@ -138,11 +148,14 @@ def markdown(groups: Groups) -> str:
     constant = {metric for metric, texts in spreads.items() if len(set(texts)) == 1}
     constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
     varying = [metric for metric in metrics if metric not in constant]
-    lines = [[*groups.keys, "n", *(["no result"] if missing else []), "success [95 %]", *varying]]
+    named = {key: [_text(row[key], "g") for row in rows] for key in groups.keys}
+    alike = {key: named[key][0] for key in groups.keys[1:] if len(set(named[key])) == 1}
+    keys = [key for key in groups.keys if key not in alike]
+    lines = [[*keys, "n", *(["no result"] if missing else []), "success [95 %]", *varying]]
     for i, row in enumerate(rows):
         lines.append(
             [
-                *(_text(row[key], "g") for key in groups.keys),
+                *(named[key][i] for key in keys),
                 str(row["n"]),
                 *([str(row["no_result"])] if missing else []),
                 _rate(row),
@@ -155,7 +168,12 @@ def markdown(groups: Groups) -> str:
         "| " + " | ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)) + " |"
         for line in lines
     ]
-    same = [f"{metric} {spreads[metric][0]}" for metric in metrics if metric in constant]
+    alike |= {metric: spreads[metric][0] for metric in metrics if metric in constant}
+    same = [
+        f"{name} {text}"
+        for name, text in alike.items()
+        if not name.startswith("config.") or alike.get(name.removeprefix("config.")) != text
+    ]
     return "\n".join(table + ([f"\nThe same in all runs: {', '.join(same)}."] if same else []))
 
 
