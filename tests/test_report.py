@@ -17,6 +17,7 @@ from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
+from rotctl.report.site.study import studies, warnings
 from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.sweeps import sweeps
@@ -391,18 +392,45 @@ def test_a_folder_that_cannot_be_written_is_one_line(sweep, tmp_path, capsys):
     assert capsys.readouterr().err.startswith(f"rotctl: cannot write {tmp_path / 'file'}")
 
 
+def test_a_sweep_of_ones_own_reproduces_no_paper(tmp_path):
+    swept(tmp_path / "own", "behaviour=stand", "duration=0.2", "seed=0")
+    report(tmp_path / "own", tmp_path / "site")
+    text = (tmp_path / "site" / "summary.md").read_text()
+    assert text.startswith("# What these runs did\n\n**No claims to judge.**\n")
+    assert "What these runs did" in Page(tmp_path / "site" / "index.html").text
+
+
+@pytest.mark.parametrize(
+    ("seeds", "rest"),
+    [
+        ("range(0,3)", ""),
+        ("range(0,9)", " The whole experiment has seed=range(0,9)."),
+        ("range(", " The whole experiment has seed=range(."),  # a stranger's
+    ],
+)
+def test_few_starts_are_the_whole_experiment_or_not(sweep, seeds, rest):
+    (sweep / "experiment-test.yaml").write_text(EXPERIMENT.replace("range(0,3)", seeds))
+    (found,), _ = sweeps(sweep)
+    (study,) = studies(found)
+    assert warnings(study) == [f"Only 3 starts a row, so that the intervals are wide.{rest}"]
+
+
 # ---------------------------------------------------------------- words
 
 
 @pytest.mark.parametrize(
     ("reason", "expected"),
     [
-        ("stalled for 3.20 s from t = 1.00 s", "stalled"),
-        ("heading off by 40 deg at the end", "heading off"),
-        ("heading off by -40 deg at the end", "heading off"),
-        ("drifted 3.10 m sideways", "drifted"),
+        ("stalled for 3.20 s from t = 1.00 s", "stalled for \u2026 s"),
+        ("heading off by -40 deg at the end", "heading off by \u2026 deg at the end"),
+        ("is up from 4.21 s only", "is up from \u2026 s only"),
+        ("turned 312 deg of 360", "turned \u2026 deg of \u2026"),
+        ("fell: centre of mass 0.10 m above the ground", "fell"),
         ("left the ground at t = 3.10 s, x = 60.03 m, y = 1.00 m: it", "left the ground"),
         ("physics broke down at t = 0.50 s: MuJoCo warns", "physics broke down"),
+        ("part 2 of 3, roll_1: leans by 40 deg", "part 2 of 3, roll_1: leans by \u2026 deg"),
+        ("part 3 of 3, roll_1, has not begun", "part 3 of 3, roll_1, has not begun"),
+        ("x" * 200, "x" * 79 + "\u2026"),
         ("", "no reason given"),
     ],
 )

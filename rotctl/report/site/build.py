@@ -19,6 +19,7 @@ from rotctl.report.site.study import (
     answer,
     by_quantity,
     lines,
+    question,
     studies,
     tally,
     warnings,
@@ -79,6 +80,7 @@ def report(
         "summary.md": encoded(texts.summary_md(every, notes)),
         "index.html": pages.page(
             "index.html",
+            question=question(claims),
             answer=answer(claims),
             tally=tally(claims),
             total=len(claims),

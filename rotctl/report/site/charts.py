@@ -118,7 +118,7 @@ def charts(found: Grid) -> list[Chart]:
                 "failures",
                 "Runs that failed, by reason",
                 outcomes.said_of_failures(runs),
-                (_WIDTH, 1.1 + 0.27 * len(groups)),
+                (_WIDTH, 0.9 + 0.2 * outcomes.lines_of_legend(runs) + 0.27 * len(groups)),
                 lambda figure, _: outcomes.failures(figure, runs),
             )
         )

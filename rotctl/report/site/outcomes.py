@@ -13,6 +13,7 @@ from rotctl.results.stored_runs import DONE
 # Blue is for success.
 COLOURS = (ORANGE, "#e69f00", "#cc79a7", GREEN, "#8a929c", "#b8860b", "#6a3d9a")
 MOST_KINDS = len(COLOURS)  # of failure; the rest is one
+LETTERS = 150  # on a line of the legend
 
 
 def starts(figure: Any, runs: pd.DataFrame, named: bool, paper: Paper) -> None:
@@ -52,12 +53,28 @@ def failures_of(runs: pd.DataFrame) -> pd.DataFrame:
     return table[order].reindex(runs["label"].drop_duplicates(), fill_value=0)
 
 
+def _shown(table: pd.DataFrame) -> pd.DataFrame:
+    """The kinds of failure that have a colour."""
+    if len(table.columns) <= MOST_KINDS:
+        return table
+    rest = table.iloc[:, MOST_KINDS - 1 :].sum(axis=1)
+    return table.iloc[:, : MOST_KINDS - 1].assign(other=rest)
+
+
+def _abreast(table: pd.DataFrame) -> int:
+    """How many kinds of failure stand beside each other in the legend, which are sentences."""
+    return max(1, min(4, LETTERS // max(len(reason) + 8 for reason in table.columns)))
+
+
+def lines_of_legend(runs: pd.DataFrame) -> int:
+    """How many lines the legend of `failures` takes."""
+    table = _shown(failures_of(runs))
+    return -(-len(table.columns) // _abreast(table))
+
+
 def failures(figure: Any, runs: pd.DataFrame) -> None:
     """Bars by group, in pieces by kind of failure."""
-    table = failures_of(runs)
-    if len(table.columns) > MOST_KINDS:
-        rest = table.iloc[:, MOST_KINDS - 1 :].sum(axis=1)
-        table = table.iloc[:, : MOST_KINDS - 1].assign(other=rest)
+    table = _shown(failures_of(runs))
     axes = figure.subplots()
     begin = np.zeros(len(table))
     for reason, colour in zip(table.columns, COLOURS, strict=False):
@@ -69,7 +86,9 @@ def failures(figure: Any, runs: pd.DataFrame) -> None:
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel("runs")
     axes.grid(visible=False, axis="y")
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside upper left", ncols=_abreast(table)
+    )
 
 
 def said_of_failures(runs: pd.DataFrame) -> str:

@@ -3,7 +3,11 @@
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
+from hydra.core.override_parser.types import ChoiceSweep, RangeSweep
+
+from rotctl.errors import InputError
 from rotctl.metrics.claims import (
     NOT_REPRODUCED,
     NOT_TESTED,
@@ -14,6 +18,7 @@ from rotctl.metrics.claims import (
     Judged,
     overall,
 )
+from rotctl.overrides import parsed
 from rotctl.report.site.rows import Row, rows
 from rotctl.report.site.words import quantity
 from rotctl.results.experiments import Experiment
@@ -88,6 +93,11 @@ def answer(found: Sequence[Line]) -> str:
     return f"{word}: {tally(found)[REPRODUCED]} of {len(found)} claims reproduced."
 
 
+def question(found: Sequence[Line]) -> str:
+    """What `answer` answers: without claims nothing was asked."""
+    return "Does it reproduce the paper?" if found else "What these runs did"
+
+
 def by_quantity(found: Sequence[Line]) -> list[str]:
     """How many claims on each metric are reproduced, in words."""
     metrics = dict.fromkeys(line.judged.claim.metric for line in found)
@@ -108,7 +118,19 @@ def warnings(study: Study) -> list[str]:
     ]
     if not rates or not study.experiment or min(rates) >= FEW:
         return []
-    return [
-        f"Only {min(rates)} starts a row, so that the intervals are wide. "
-        f"The whole experiment has seed={study.experiment.seeds}."
-    ]
+    said = f"Only {min(rates)} starts a row, so that the intervals are wide."
+    seeds = study.experiment.seeds
+    whole = _no_more(seeds, study.sweep.table.rows["seed"].nunique())
+    return [said if whole else f"{said} The whole experiment has seed={seeds}."]
+
+
+def _no_more(seeds: str, there: int) -> bool:
+    """Whether seeds in sweep syntax are no more than are there; not where it cannot be read."""
+    try:
+        found = parsed(f"seed={seeds}")
+    except InputError:  # a stranger's
+        return False
+    if not found.is_sweep_override():
+        return there > 0
+    listed = isinstance(found.value(), ChoiceSweep | RangeSweep)
+    return listed and len(list(islice(found.sweep_string_iterator(), there + 1))) <= there

@@ -11,7 +11,16 @@ from itertools import groupby
 from xml.etree import ElementTree as Xml
 
 from rotctl.metrics.claims import NOT_TESTED, REPRODUCED
-from rotctl.report.site.study import Line, Study, answer, by_quantity, lines, tally, warnings
+from rotctl.report.site.study import (
+    Line,
+    Study,
+    answer,
+    by_quantity,
+    lines,
+    question,
+    tally,
+    warnings,
+)
 from rotctl.report.site.words import claimed, expectation, spread, with_unit
 from rotctl.report.title import plain
 
@@ -85,7 +94,7 @@ def _value(line: Line) -> str:
 def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
     """The answer, and a table of the claims, for the summary of a CI job."""
     judged = lines(found)
-    parts = ["# Does it reproduce the paper?", f"**{answer(judged)}**"]
+    parts = [f"# {question(judged)}", f"**{answer(judged)}**"]
     if judged:
         parts.append("\n".join(f"- {_escaped(text)}" for text in by_quantity(judged)))
     parts += [f"> {_escaped(note)}" for note in notes]

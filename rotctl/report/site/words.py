@@ -22,6 +22,11 @@ QUANTITIES = {
     **{c.name: (c.title, c.unit) for kind in (appearance, pace) for c in kind.COLUMNS},
 }
 NOTHING = "\u2013"
+LONGEST = 80  # letters of a kind of failure
+_ANY = "\u2026"  # for a number
+_PART = re.compile(r"part \d+ of \d+, \w+(: |, )")  # of a chain
+_NUMBER = re.compile(r"(?<!\w)[-\u2212]?\d+(\.\d+)?(?!\w)")
+_TIME = re.compile(r",? (from|at) t = .*")
 
 
 def quantity(metric: str) -> str:
@@ -77,11 +82,16 @@ def values(where: Mapping[str, Any]) -> str:
 
 
 def kind(reason: str) -> str:
-    """A failure's reason without its numbers: `stalled for 3.2 s from t = ...` is `stalled`."""
-    words = re.split(r"[\d:(\u2212-]", plain(reason))[0].split()
-    while words and words[-1] in ("for", "by", "at", "after", "on", "t", "="):
-        words.pop()
-    return " ".join(words) or "no reason given"
+    """A failure's reason without its numbers: `leans by 25 deg at the end` with an ellipsis for 25.
+
+    Of a time only what happens then is left, and of a chain which of its parts it is about.
+    """
+    said = plain(reason)
+    part = _PART.match(said)
+    named = part[0] if part else ""
+    words = _NUMBER.sub(_ANY, _TIME.sub("", re.split(r"[:(]", said[len(named) :])[0])).split()
+    text = f"{named}{' '.join(words)}".rstrip(" ,:") or "no reason given"
+    return text if len(text) <= LONGEST else text[: LONGEST - 1] + _ANY
 
 
 def count(n: int, one: str, many: str = "") -> str:
