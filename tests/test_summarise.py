@@ -17,9 +17,10 @@ from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
 from rotctl.results.groups import grouped, markdown
+from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
-from rotctl.results.stored_runs import stored_runs
-from rotctl.results.table import Table, table
+from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
+from rotctl.results.table import Table, table, tabulated
 from rotctl.run import make, run
 
 ARGUMENTS = [
@@ -221,6 +222,32 @@ def test_without_a_sweep_the_keys_are_those_that_differ(tmp_path):
     assert found_.keys == ["behaviour", "controller.pose.damping", "seed"]
     assert sorted(found_.rows["seed"]) == [1, 2]
     assert len(grouped(found_).rows) == 2
+
+
+def test_what_some_runs_have_is_named_and_differs_among_those_of_its_name(tmp_path):
+    """An end of a roll has no name; its stages have, and its numbers are told once."""
+    end = {"after": 8.0, "stages": [{"name": "stand", "poses": {"a": {"knee": 0.1}}}]}
+    seat = {"after": 8.0, "stages": [{"name": "squat"}, {"name": "stand"}]}
+    configs = [
+        {"behaviour": {"name": "roll", "finish": finish, "course": course}, "seed": 0}
+        for finish, course in (
+            (None, {"name": "circle", "legs": [1]}),
+            (end, {"name": "slalom", "legs": [2]}),
+            (end | {"after": 1.5}, None),
+            (seat, None),
+        )
+    ]
+    made_of = [
+        StoredRun(str(i), DONE, outcome={"success": True}, config=config)
+        for i, config in enumerate(configs)
+    ]
+    found = tabulated(made_of, [])
+    keys = ["behaviour.finish", "behaviour.finish.after", "behaviour.course"]
+    assert found.keys == ["behaviour", *keys, "seed"]
+    assert set(found.rows["behaviour.finish"].dropna()) == {"stand", "squat, stand"}
+    assert len(grouped(found).rows) == 4
+    (line,) = [line for line in lines(made_of, tmp_path) if line.startswith("2 ")]
+    assert "  behaviour.finish=stand behaviour.finish.after=1.5  " in line
 
 
 def test_a_foreign_run_in_a_sweep_is_not_pooled_with_what_it_differs_from(sweep):

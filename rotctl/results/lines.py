@@ -77,6 +77,8 @@ def _values(run: StoredRun, keys: Sequence[str]) -> str:
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, dict):  # of many values, of which those that differ have a key themselves
+        return f"{{{', '.join(value)}}}"
     text = value if isinstance(value, str) else json.dumps(value)
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from rotctl.results.keys import value_at
+from rotctl.results.keys import name_of, value_at
 from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
@@ -121,14 +121,18 @@ def _leaves_that_differ(key: str, values: list[Any]) -> list[str]:
     first = values[0]
     if all(value is first or value == first for value in values):
         return []
-    if not all(isinstance(value, dict) for value in values):
-        return [key]
-    parts = dict.fromkeys(part for value in values for part in value)
-    return [
+    alike: dict[str | None, list[Any]] = {}
+    for value in values:
+        if isinstance(value, dict):
+            alike.setdefault(name_of(value), []).append(value)
+    whole = len(alike) == 1 and all(isinstance(value, dict) for value in values)
+    leaves = [
         leaf
-        for part in parts
-        for leaf in _leaves_that_differ(f"{key}.{part}", [value.get(part) for value in values])
+        for same in alike.values()
+        for part in dict.fromkeys(part for value in same for part in value)
+        for leaf in _leaves_that_differ(f"{key}.{part}", [value.get(part) for value in same])
     ]
+    return leaves if whole else [key, *leaves]
 
 
 def _cell(value: Any) -> Any:
