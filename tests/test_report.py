@@ -5,6 +5,7 @@ import io
 import json
 import os
 import shutil
+from dataclasses import replace
 from html.parser import HTMLParser
 from xml.etree import ElementTree as Xml
 
@@ -17,6 +18,9 @@ from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
+from rotctl.report.site.charts import charts
+from rotctl.report.site.grid import grid
+from rotctl.report.site.panels import drawn
 from rotctl.report.site.study import studies, warnings
 from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
@@ -398,6 +402,22 @@ def test_a_sweep_of_ones_own_reproduces_no_paper(tmp_path):
     text = (tmp_path / "site" / "summary.md").read_text()
     assert text.startswith("# What these runs did\n\n**No claims to judge.**\n")
     assert "What these runs did" in Page(tmp_path / "site" / "index.html").text
+
+
+def test_a_move_that_does_not_roll_has_its_own_metrics_on_the_page_of_its_sweep(tmp_path):
+    pushes = ("disturbance=push", "disturbance.impulse=10,20,30", "disturbance.time=[0.1,0.1]")
+    swept(tmp_path / "own", "behaviour=stand", *pushes, "duration=0.4", "seed=0")
+    (found,), _ = sweeps(tmp_path / "own")
+    laid_out = grid(found.table)
+    assert {"lean_most", "speed_end", "duration"} <= set(laid_out.metrics)
+    assert not {"criteria", "parts"} & set(laid_out.metrics)
+    assert drawn(laid_out)[:2] == ["lean_most", "lean_end"]
+    assert [chart.heading for chart in charts(laid_out)][:2] == [
+        "Success rates with 95 % intervals; medians and quartiles of the rest",
+        "Over disturbance.impulse: success rate with its 95 % interval, medians with quartiles",
+    ]
+    alone = replace(laid_out, groups=laid_out.groups[:1], axes=[])
+    assert charts(alone)[0].heading == "Success rates with 95 % intervals"
 
 
 @pytest.mark.parametrize(

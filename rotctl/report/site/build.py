@@ -24,7 +24,7 @@ from rotctl.report.site.study import (
     tally,
     warnings,
 )
-from rotctl.report.site.words import QUANTITIES, Names
+from rotctl.report.site.words import Names
 from rotctl.results.configs import config_hash
 from rotctl.results.groups import grouped
 from rotctl.results.sweeps import Sweep, sweeps
@@ -133,7 +133,7 @@ def _page_of(sweep: Sweep, name: str, files: Files) -> str:
         sweep=sweep,
         name=name,
         charts=made,
-        metrics=[metric for metric in QUANTITIES if metric in sweep.table.metrics],
+        metrics=laid_out.metrics,
         groups=laid_out.groups.head(MOST_LISTED).to_dict("records"),
         more=max(0, len(groups) - MOST_LISTED),
         notes=[*sweep.notes, *laid_out.notes],

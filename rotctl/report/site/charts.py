@@ -61,15 +61,17 @@ def charts(found: Grid) -> list[Chart]:
     """The charts that make sense for a sweep, most telling first."""
     groups, runs = found.groups, found.runs
     some = len(groups) <= MOST_GROUPS
+    shown = panels.drawn(found)
     made = []
     if some:
         made.append(
             _chart(
                 "groups",
-                "Success rates with 95 % intervals; medians and quartiles of the rest",
+                "Success rates with 95 % intervals"
+                + ("; medians and quartiles of the rest" if shown else ""),
                 panels.said_of_groups(groups),
-                (_WIDTH, 1.0 + 0.27 * len(groups)),
-                lambda figure, _: panels.groups(figure, groups),
+                (_WIDTH, 1.3 + 0.27 * len(groups)),
+                lambda figure, _: panels.groups(figure, groups, shown),
             )
         )
     if found.axes:
@@ -79,10 +81,11 @@ def charts(found: Grid) -> list[Chart]:
             made.append(
                 _chart(
                     "curves",
-                    f"Over {key}: success rate with its 95 % interval, medians with quartiles",
+                    f"Over {key}: success rate with its 95 % interval"
+                    + (", medians with quartiles" if shown else ""),
                     f"Curves over {key}. {panels.said_of_groups(groups)}",
                     (_WIDTH, 3.0),
-                    lambda figure, _: panels.curves(figure, lines, key),
+                    lambda figure, _: panels.curves(figure, lines, key, shown[:2]),
                 )
             )
     if len(found.axes) > 1:

@@ -6,8 +6,8 @@ from typing import Any
 
 import pandas as pd
 
-from rotctl.report.site.words import values
-from rotctl.results.groups import Groups, grouped
+from rotctl.report.site.words import OFTEN, values
+from rotctl.results.groups import IN_FILES_ONLY, Groups, grouped
 from rotctl.results.table import Table
 
 FEWEST = 3  # different numbers that make an axis
@@ -22,6 +22,7 @@ class Grid:
         runs: the table's rows with the `label` of their group.
         axes: keys with numbers, in the order of the sweep.
         others: the keys that tell groups apart beside the axes.
+        metrics: that were measured: those that all motions share, and what `summarise` prints.
         notes: what a reader should know of the groups, one line each.
     """
 
@@ -29,6 +30,7 @@ class Grid:
     runs: pd.DataFrame
     axes: list[str]
     others: list[str]
+    metrics: list[str]
     notes: list[str]
 
 
@@ -40,7 +42,15 @@ def grid(table: Table) -> Grid:
     seeds = pd.to_numeric(table.rows["seed"], errors="coerce")  # a stranger's may be words
     runs = table.rows.assign(label=labels(table.rows, keys), seed=seeds)
     axes = [key for key in keys if _is_axis(groups[key])]
-    return Grid(groups, runs, axes, [key for key in keys if key not in axes], found.notes)
+    others = [key for key in keys if key not in axes]
+    return Grid(groups, runs, axes, others, _of_interest(found), found.notes)
+
+
+def _of_interest(found: Groups) -> list[str]:
+    """Metrics of a page: the usual ones, then those of this kind of motion, in a run at least."""
+    there = [m for m in found.metrics if found.rows[f"{m}_median"].notna().any()]
+    usual = [metric for metric in OFTEN if metric in there]
+    return usual + [m for m in there if m not in (*usual, *IN_FILES_ONLY)]
 
 
 def telling(found: Groups) -> list[str]:

@@ -2,17 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from textwrap import fill
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from rotctl.metrics.judge import COLUMNS
 from rotctl.report.axes import BLUE, GREEN, ORANGE
 from rotctl.report.rows import LARGEST
-from rotctl.report.site.grid import labels
+from rotctl.report.site.grid import Grid, labels
 from rotctl.report.site.words import quantity, with_unit
 
-METRICS = ("angular_velocity_mean", "speed_mean", "longest_stall")
+METRICS = ("angular_velocity_mean", "speed_mean", "longest_stall")  # of a roll
 _COMMANDED = {
     "angular_velocity_mean": "angular_velocity_commanded",
     "speed_mean": "speed_commanded",
@@ -20,6 +22,7 @@ _COMMANDED = {
 _HEADINGS = {"angular_velocity_mean": "In-plane [rev/s]", "speed_mean": "Speed [m/s]"}
 _COLOURS = (BLUE, ORANGE, GREEN, "#cc79a7", "#e69f00", "#56b4e9", "#8a929c", "#b8860b")
 _RATE = "Success rate [%]"
+LETTERS = 20  # on a line above a panel
 LEAST = 1e-12  # in any unit; what is smaller is 0
 
 
@@ -36,9 +39,19 @@ class Paper:
 # ---------------------------------------------------------------- groups, one below the other
 
 
-def groups(figure: Any, rows: pd.DataFrame) -> None:
+def drawn(found: Grid) -> list[str]:
+    """The metrics that are drawn: a roll's, or the first that differ of another motion's."""
+    rolls = [metric for metric in METRICS if metric in found.metrics]
+    own = [
+        metric
+        for metric in COLUMNS
+        if metric in found.metrics and found.groups[f"{metric}_median"].nunique() > 1
+    ]
+    return rolls or own[: len(METRICS)]
+
+
+def groups(figure: Any, rows: pd.DataFrame, shown: Sequence[str]) -> None:
     """Rates and medians of each group, with what was commanded."""
-    shown = [metric for metric in METRICS if f"{metric}_median" in rows]
     ratios = [1.5, *([1.0] * len(shown))]
     first, *rest = _row_of_axes(figure, 1 + len(shown), sharey=True, width_ratios=ratios)
     places = np.arange(len(rows))
@@ -92,10 +105,8 @@ def lines(rows: pd.DataFrame, keys: Sequence[str]) -> dict[str, pd.DataFrame]:
     return {name: rows[[each == name for each in names]] for name in dict.fromkeys(names)}
 
 
-def curves(figure: Any, found: dict[str, pd.DataFrame], key: str) -> None:
+def curves(figure: Any, found: dict[str, pd.DataFrame], key: str, shown: Sequence[str]) -> None:
     """Rates and medians over a key, with their intervals as bands."""
-    some = next(iter(found.values()))
-    shown = [metric for metric in METRICS[:2] if f"{metric}_median" in some]
     all_axes = _row_of_axes(figure, 1 + len(shown))
     for axes, metric in zip(all_axes, ["success", *shown], strict=True):
         scale = 100.0 if metric == "success" else 1.0
@@ -150,7 +161,8 @@ def _shared(settings: dict[str, Any]) -> dict[str, Any]:
 
 def _heading(metric: str) -> str:
     unit = with_unit("", metric).strip()
-    return _HEADINGS.get(metric) or f"{quantity(metric)}{f' [{unit}]' if unit else ''}"
+    words = _HEADINGS.get(metric) or f"{quantity(metric)}{f' [{unit}]' if unit else ''}"
+    return fill(words, LETTERS)
 
 
 def _band(rows: pd.DataFrame, metric: str) -> list[Any]:

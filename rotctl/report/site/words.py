@@ -6,6 +6,7 @@ from typing import Any
 
 from rotctl.metrics import appearance, pace
 from rotctl.metrics.claims import SUCCESS_RATE, Claim, Measured
+from rotctl.metrics.judge import COLUMNS
 from rotctl.report.title import plain
 
 QUANTITIES = {
@@ -21,6 +22,8 @@ QUANTITIES = {
     "real_time_factor": ("Real-time factor", ""),
     **{c.name: (c.title, c.unit) for kind in (appearance, pace) for c in kind.COLUMNS},
 }
+OFTEN = tuple(QUANTITIES)  # these before others
+QUANTITIES |= {c.name: (c.title, c.unit) for c in COLUMNS.values() if c.name not in QUANTITIES}
 NOTHING = "\u2013"
 LONGEST = 80  # letters of a kind of failure
 _ANY = "\u2026"  # for a number
