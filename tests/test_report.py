@@ -9,6 +9,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from xml.etree import ElementTree as Xml
 
+import pandas as pd
 import pytest
 from here import swept
 from logs import changed
@@ -21,6 +22,7 @@ from rotctl.report.site.build import report
 from rotctl.report.site.charts import charts
 from rotctl.report.site.grid import grid
 from rotctl.report.site.panels import drawn
+from rotctl.report.site.rows import from_worst, rows
 from rotctl.report.site.study import studies, warnings
 from rotctl.report.site.words import Names, kind, number, ranges
 from rotctl.results.manifest import Entry, read, write
@@ -418,6 +420,32 @@ def test_a_move_that_does_not_roll_has_its_own_metrics_on_the_page_of_its_sweep(
     ]
     alone = replace(laid_out, groups=laid_out.groups[:1], axes=[])
     assert charts(alone)[0].heading == "Success rates with 95 % intervals"
+
+
+def test_who_fell_first_and_leans_most_is_the_worst_where_nothing_rolls():
+    done = pd.DataFrame(
+        {
+            "run_id": ["stood", "moved", "fell late", "leant", "fell first"],
+            "success": [True, False, False, False, False],
+            "other_contact": [0.0, 0.0, 0.4, 0.0, 1.9],
+            "lean_end": [1.0, 3.0, 80.0, 25.0, 70.0],
+        }
+    )
+    assert from_worst(done) == ["fell first", "fell late", "leant", "moved", "stood"]
+    rolled = done.assign(revolutions=[9.0, 1.0, 3.0, 2.0, 4.0])
+    assert from_worst(rolled) == ["moved", "leant", "fell late", "fell first", "stood"]
+
+
+def test_a_row_over_several_settings_says_so_and_of_which_its_pictures_are(tmp_path):
+    swept(tmp_path / "own", "behaviour=stand", "duration=0.2,0.3,0.4", "seed=0")
+    (found,), _ = sweeps(tmp_path / "own")
+    (row,) = rows(found, None)
+    assert row.pooled == "config.duration 0.2, 0.3, 0.4"
+    assert set(row.which.values()) <= {f"config.duration {time}" for time in (0.2, 0.3, 0.4)}
+    report(tmp_path / "own", tmp_path / "site")
+    text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
+    assert "taken together: config.duration 0.2, 0.3, 0.4." in text
+    assert f"Median run: seed 0 run {row.median.run_id}, config.duration 0.3" in text
 
 
 @pytest.mark.parametrize(

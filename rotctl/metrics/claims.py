@@ -140,6 +140,15 @@ def measured(done: "pd.DataFrame", metric: str, quantile: float = 0.5) -> Measur
     return Measured(value, low, high, len(values))
 
 
+def in_which(runs: "pd.DataFrame", keys: Sequence[str], where: Mapping[str, Any]) -> list[str]:
+    """The keys in which runs differ that are taken together, beside their seed."""
+    return [
+        key
+        for key in keys
+        if key != "seed" and key not in where and runs[key].nunique(dropna=False) > 1
+    ]
+
+
 def overall(verdicts: Sequence[str]) -> str:
     """One verdict for several claims: partly, unless all or none of them hold."""
     if set(verdicts) == {REPRODUCED}:
@@ -174,11 +183,7 @@ def _untested(claim: Claim, table: "pd.DataFrame", about: "pd.DataFrame") -> str
 
 def _mixed(claim: Claim, done: "pd.DataFrame", keys: Sequence[str]) -> list[str]:
     """In what the runs differ that should be alike."""
-    differing = [
-        key
-        for key in keys
-        if key != "seed" and key not in claim.where and done[key].nunique(dropna=False) > 1
-    ]
+    differing = in_which(done, keys, claim.where)
     remarks = [f"over runs that differ in {', '.join(differing)}"] if differing else []
     codes = done["code"].nunique() if "code" in done else 1
     return remarks + ([f"over runs of {codes} versions of the code"] if codes > 1 else [])

@@ -87,6 +87,7 @@ def report(
             by_quantity=by_quantity(claims),
             notes=notes,
             studies=shown,
+            addresses=addresses,
             sweeps=[(sweep, addresses[sweep.name], origin(sweep)) for sweep in found],
         ),
     }

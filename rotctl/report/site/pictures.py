@@ -22,8 +22,8 @@ class Picture:
     """What shows one run.
 
     Attributes:
-        role: `median`, `worst`, or `least turned` where that one succeeded too.
-        run: seed and run id.
+        role: `median`, `worst`, or where that one succeeded too `least turned` or `poorest`.
+        run: seed, run id, and what it is of where runs of several kinds are taken together.
         verdict: how it ended.
         replay: address of its page; empty if there is none.
         strip: address of its filmstrip; empty if there is none.
@@ -51,18 +51,20 @@ def pictures(row: Row, folder: Path, name: str, put: Put) -> list[Picture]:
     """
     found = []
     if row.median is not None:
-        found.append(_picture("median", row.median, folder, f"{name}-median", put))
+        found.append(_picture("median", row, row.median, folder, f"{name}-median", put))
     if row.poorest is not None:
-        role = "least turned" if row.poorest.outcome.get("success") else "worst"
-        found.append(_picture(role, row.poorest, folder, f"{name}-worst", put))
+        least = "poorest" if row.poorest.outcome.get("revolutions") is None else "least turned"
+        role = least if row.poorest.outcome.get("success") else "worst"
+        found.append(_picture(role, row, row.poorest, folder, f"{name}-worst", put))
     return found
 
 
-def _picture(role: str, run: StoredRun, folder: Path, name: str, put: Put) -> Picture:
+def _picture(role: str, row: Row, run: StoredRun, folder: Path, name: str, put: Put) -> Picture:
     address, drawn, trouble = "", "", ""
+    which = f", {row.which[run.run_id]}" if row.which else ""
     if not run.log:
         again = f"its log was not kept; rotctl run --again {folder / run.run_id} makes it again"
-        return Picture(role, run.run_id, "", "", "", f"no replay: {again}")
+        return Picture(role, run.run_id + which, "", "", "", f"no replay: {again}")
     try:
         log = RunLog.open(folder / run.log, linked=False)
         top = title(log)
@@ -70,13 +72,13 @@ def _picture(role: str, run: StoredRun, folder: Path, name: str, put: Put) -> Pi
         put(f"replays/{name}.html", encoded(replay.page(log, site=site)))
         address = f"replays/{name}.html"
     except RotctlError as error:
-        return Picture(role, run.run_id, "", "", "", f"no replay: {_short(error, folder)}")
+        return Picture(role, run.run_id + which, "", "", "", f"no replay: {_short(error, folder)}")
     try:
         put(f"pictures/{name}.png", strip(log, FRAMES, SIZE))
         drawn = f"pictures/{name}.png"
     except RotctlError as error:
         trouble = f"no filmstrip: {_short(error, folder)}"
-    return Picture(role, " ".join(top.about.split()), top.verdict, address, drawn, trouble)
+    return Picture(role, " ".join(top.about.split()) + which, top.verdict, address, drawn, trouble)
 
 
 def _short(error: RotctlError, folder: Path) -> str:

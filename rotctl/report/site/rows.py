@@ -9,7 +9,17 @@ from typing import Any
 import pandas as pd
 
 from rotctl.metrics import appearance
-from rotctl.metrics.claims import SUCCESS_RATE, Judged, Measured, judge, measured, overall, picked
+from rotctl.metrics.claims import (
+    SUCCESS_RATE,
+    Judged,
+    Measured,
+    in_which,
+    judge,
+    measured,
+    overall,
+    picked,
+)
+from rotctl.report.site.grid import labels
 from rotctl.report.site.words import kind, values
 from rotctl.report.title import plain
 from rotctl.results.experiments import Experiment
@@ -24,6 +34,23 @@ SHOWN = (
     "speed_commanded",
     "longest_stall",
 )
+# What is better, more of it or less, the most telling first; a motion has some of them.
+BETTER = {
+    "revolutions": 1,
+    "parts_succeeded": 1,
+    "parts_begun": 1,
+    "duration": 1,  # of a run that broke down
+    "other_contact": -1,  # [s] on the ground: who fell first lies longest
+    "up_from": -1,
+    "held": 1,
+    "entry_angle": -1,
+    "error_end": -1,
+    "stature_end": 1,
+    "lowest_in_the_end": 1,
+    "lean_end": -1,
+    "speed_end": -1,
+}
+MOST_VALUES = 6  # of a key in which runs of a row differ
 LOOKS = tuple(column.name for column in appearance.COLUMNS)
 
 
@@ -41,8 +68,10 @@ class Row:
         worst: of the run with the longest stall [s].
         missing: runs without a result.
         failures: kind of failure -> how many, most first.
-        median: the run in the middle, by success and then revolutions; None without results.
+        median: the run in the middle from worst to best, see `BETTER`; None without results.
         poorest: the first in that order, if it is another one.
+        pooled: in which keys its runs differ, and their values; empty if they are alike.
+        which: run id of the median and the poorest -> their values of these keys.
         deviations: from what is reproduced.
     """
 
@@ -58,6 +87,8 @@ class Row:
     failures: tuple[tuple[str, int], ...]
     median: StoredRun | None
     poorest: StoredRun | None
+    pooled: str
+    which: Mapping[str, str]
     deviations: tuple[str, ...]
 
 
@@ -85,12 +116,14 @@ def _row(
     failed = done[~done["success"].astype(bool)]
     reasons = Counter(kind(str(reason)) for reason in failed["failure_reason"])
     reasons.update(about[about["success"].isna()]["status"].tolist())
-    order = _from_worst(done)
+    order = from_worst(done)
     median = sweep.runs[order[(len(order) - 1) // 2]] if order else None
     poorest = sweep.runs[order[0]] if order else None
     stalls = [v for v in done.get("longest_stall", []) if isinstance(v, float) and math.isfinite(v)]
     config = median.config if median else {}
     looks = {name: measured(done, name) for name in LOOKS}
+    keys = in_which(done, sweep.table.keys, where)
+    drawn = done[done["run_id"].isin([run.run_id for run in (median, poorest) if run])]
     return Row(
         name=values(where),
         about=_text(config, "behaviour.description"),
@@ -104,16 +137,28 @@ def _row(
         failures=tuple(sorted(reasons.items(), key=lambda item: (-item[1], item[0]))),
         median=median,
         poorest=poorest if poorest is not median else None,
+        pooled="; ".join(f"{plain(key)} {_each(done[key])}" for key in keys),
+        which=dict(zip(drawn["run_id"], labels(drawn, keys), strict=True)) if keys else {},
         deviations=_deviations(where, experiment),
     )
 
 
-def _from_worst(done: pd.DataFrame) -> list[str]:
-    """Run ids: those that failed before those that succeeded, few revolutions before many."""
-    turns = pd.to_numeric(done.get("revolutions", pd.Series(0.0, done.index)), errors="coerce")
-    order = pd.DataFrame({"success": done["success"].astype(bool), "turns": turns})
-    index = order.sort_values(["success", "turns"], na_position="first", kind="stable").index
+def from_worst(done: pd.DataFrame) -> list[str]:
+    """Run ids: those that failed before those that succeeded, then by `BETTER`."""
+    columns = {"success": done["success"].astype(bool)}
+    for name, better in BETTER.items():
+        if name in done:
+            columns[name] = better * pd.to_numeric(done[name], errors="coerce")
+    order = pd.DataFrame(columns)
+    index = order.sort_values([*columns], na_position="first", kind="stable").index
     return [str(name) for name in done.loc[index, "run_id"]]
+
+
+def _each(column: pd.Series) -> str:
+    """The different values of a column, the first of them."""
+    every = list(dict.fromkeys(column.tolist()))
+    more = [] if len(every) <= MOST_VALUES else ["\u2026"]
+    return ", ".join([*(plain(f"{value}") for value in every[:MOST_VALUES]), *more])
 
 
 def _deviations(where: Mapping[str, Any], experiment: Experiment | None) -> tuple[str, ...]:
