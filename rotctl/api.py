@@ -91,6 +91,7 @@ def sweep(
     from rotctl.results import experiments
     from rotctl.results.table import table
     from rotctl.sweep import keep
+    from rotctl.sweep.claimed import require_claims
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
@@ -100,6 +101,7 @@ def sweep(
     given, folder = expanded(overrides), Path(out)
     with listing.own(Path(config_dir) if config_dir else None):
         wanted = planned(points(experiments.matrix(given)))
+        require_claims(given, wanted)
         with closing(make_engine(jobs, None)) as engine, locked(folder):
             if experiment := experiments.named(given):
                 experiments.copy_into(folder, experiment)

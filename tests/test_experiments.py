@@ -12,6 +12,8 @@ from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.judge import COLUMNS
 from rotctl.overrides import parsed
 from rotctl.results.experiments import copies, experiment, matrix, names, read
+from rotctl.sweep.claimed import require_claims
+from rotctl.sweep.plan import planned
 from rotctl.sweep.points import points
 
 TABLE_1 = {  # [rev/s], [m/s]
@@ -46,6 +48,58 @@ def test_claims_are_about_runs_that_are_made_and_quantities_that_are_measured(na
         for key, value in claim.where.items():
             chosen = rf"\+{key.removeprefix('behaviour.')}"  # as +course=circle is
             assert re.search(rf"(\b{key}|{chosen})=\S*(?<![\w.-]){value}\b", grids), claim.id
+
+
+@pytest.mark.parametrize("name", names())
+def test_claims_of_what_we_ship_can_be_tested(name):
+    given = [f"+experiment={name}", "seed=0"]
+    require_claims(given, planned(points(matrix(given))))
+
+
+OWN = """
+title: Mine
+source: me
+matrix: [["behaviour=stand,stand_step", "duration=0.3"]]
+seeds: range(0,2)
+claims:
+  - {id: a, metric: METRIC, expected: 1.0, tolerance: 0.5, source: me, where: {WHERE}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("metric", "where", "further", "message"),
+    [
+        ("lean_mots", "", [], "metric: no 'lean_mots' is measured; did you mean lean_most? "),
+        ("lean_most", "behaviour: stnad", [],
+         "where: no run of its grid has behaviour stnad; did you mean stand? valid: "
+         "stand, stand_step"),
+        ("lean_most", "behaviour: stnad", ["behaviour=stand_step"],
+         "where: no run of its grid has behaviour stnad; did you mean stand? valid: "
+         "stand, stand_step"),
+        ("lean_most", "behavior: stand", [],
+         "where: no run of its grid has the key 'behavior'; did you mean behaviour? valid: "),
+        ("lean_most", "duration: 0.4", [], "where: no run of its grid has duration 0.4; "),
+        ("lean_most", "seed: 2", [], "where: no run of its grid has seed 2; valid: 0, 1"),
+        ("lean_most", "behaviour: stand, controller: stepping", [],
+         "where: no run of its grid has behaviour stand, controller stepping"),
+        ("lean_most", "behaviour: stand, duration: 0.3", [], ""),
+        ("lean_most", "behaviour: stand, seed: 1", ["behaviour=stand_step"], ""),
+    ],
+)  # fmt: skip
+def test_a_claim_that_nobody_can_test_is_refused_before_the_sweep(
+    tmp_path, monkeypatch, capsys, metric, where, further, message
+):
+    (tmp_path / "experiments").mkdir()
+    text = OWN.replace("METRIC", metric).replace("WHERE", where)
+    (tmp_path / "experiments" / "mine.yaml").write_text(text)
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
+    out = tmp_path / "out"
+    code = main(["sweep", "+experiment=mine", *further, "--out", str(out), "--dry-run"])
+    error = capsys.readouterr().err
+    assert code == (2 if message else 0)
+    assert error.startswith(f"rotctl: +experiment=mine: claim a: {message}" if message else "")
+    assert error.count("\n") <= 1
+    assert not out.exists()
 
 
 def test_table_1_has_the_velocities_of_the_paper():

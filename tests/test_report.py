@@ -318,14 +318,14 @@ def test_against_tells_what_changed_and_fails_if_worse(sweep, tmp_path, capsys):
     site = str(tmp_path / "site")
     command = ["report", str(sweep.parent), "--out", site]
     assert main(command) == 0
-    assert capsys.readouterr().out == f"{site}/index.html\n"
+    assert capsys.readouterr().out.startswith(f"{site}/index.html\n")
     assert main([*command, "--against", site]) == 0
     assert capsys.readouterr().out.endswith("no claim changed its verdict\n")
     better = EXPERIMENT.replace("at_most, expected: 0.1", "at_most, expected: 1.0")
     worse = better.replace("at_least, expected: 0.9", "at_most, expected: 0.0")
     (sweep / "experiment-test.yaml").write_text(worse.replace("id: gone", "id: new"))
     assert main([*command, "--against", site]) == 1
-    assert capsys.readouterr().out.splitlines()[1:] == [
+    assert capsys.readouterr().out.splitlines()[-3:] == [
         "- worse: table/test/roll: reproduced -> not reproduced",
         "- better: table/test/decline: not reproduced -> reproduced",
         "- new: table/test/new: absent -> not tested",
@@ -460,7 +460,23 @@ def test_few_starts_are_the_whole_experiment_or_not(sweep, seeds, rest):
     (sweep / "experiment-test.yaml").write_text(EXPERIMENT.replace("range(0,3)", seeds))
     (found,), _ = sweeps(sweep)
     (study,) = studies(found)
-    assert warnings(study) == [f"Only 3 starts a row, so that the intervals are wide.{rest}"]
+    assert warnings(study)[0] == f"Only 3 starts a row, so that the intervals are wide.{rest}"
+
+
+def test_claims_that_nobody_could_test_are_named_with_the_reason(sweep, tmp_path, capsys):
+    (sweep / "experiment-test.yaml").write_text(EXPERIMENT.replace("speed_mean", "sped_mean"))
+    assert main(["report", str(sweep), "--out", str(tmp_path / "site")]) == 0
+    why = [
+        "Not tested, the summary has no 'sped_mean': roll.speed",
+        "Not tested, no such run in the sweep: gone",
+    ]
+    assert capsys.readouterr().out.splitlines() == [str(tmp_path / "site" / "index.html"), *why]
+    text = Page(tmp_path / "site" / "index.html").text
+    assert all(line in text for line in why)
+    assert (
+        "> Not tested, no such run in the sweep: gone"
+        in (tmp_path / "site" / "summary.md").read_text()
+    )
 
 
 # ---------------------------------------------------------------- words

@@ -60,6 +60,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     mujoco_without_opengl()
     from rotctl.results import experiments
     from rotctl.sweep import keep
+    from rotctl.sweep.claimed import require_claims
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
@@ -80,6 +81,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
         with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
             runs = planned(bar)
+        require_claims(arguments.overrides, runs)
         if arguments.dry_run:
             print(without_running(runs, out, engine.workers, kept, count(matrix)))
             return 0
@@ -232,12 +234,15 @@ def report(arguments: argparse.Namespace) -> int:
     """Make the pages on many runs, and compare their claims with those of an earlier report."""
     from rotctl.report.site import against
     from rotctl.report.site.build import report
+    from rotctl.report.site.study import untested
 
     # Before it is replaced, should it be the same folder.
     old = against.read(arguments.against) if arguments.against else None
     with bar("report", "part") as shown:
         claims = report(arguments.folder, arguments.out, following(shown))
     print(arguments.out / "index.html")
+    for text in untested(claims):
+        print(one_line(text))
     if old is None:
         return 0
     found = against.changes(old, claims)

@@ -108,6 +108,8 @@ def judge(claim: Claim, table: "pd.DataFrame", keys: Sequence[str]) -> Judged:
     if len(done) and claim.metric not in (SUCCESS_RATE, *done.columns):
         remarks.append(f"the summary has no {claim.metric!r}")
     found = measured(done, claim.metric, claim.quantile)
+    if len(done) and claim.metric in done.columns and not found.runs:
+        remarks.append(f"no run has a number of {claim.metric!r}")
     return Judged(claim, _verdict(claim, found, missing), found, missing, tuple(remarks))
 
 

@@ -25,6 +25,7 @@ from rotctl.results.experiments import Experiment
 from rotctl.results.sweeps import Sweep
 
 _IN_A_WORD = {REPRODUCED: "Yes", PARTLY: "In part", NOT_REPRODUCED: "No", NOT_TESTED: "Unknown"}
+MOST_NAMED = 12  # claims on a line
 FEW = 20  # runs; below that a success rate says little
 
 
@@ -108,8 +109,26 @@ def by_quantity(found: Sequence[Line]) -> list[str]:
     ]
 
 
+def untested(found: Iterable[Line]) -> list[str]:
+    """Which claims nobody could test, by the reason why, one line each."""
+    reasons: dict[str, list[str]] = {}
+    for line in found:
+        if line.judged.verdict == NOT_TESTED:
+            reason = "; ".join(line.judged.remarks)
+            reasons.setdefault(reason, []).append(line.judged.claim.id)
+    return [
+        f"Not tested, {reason}: {', '.join(ids[:MOST_NAMED])}"
+        + (f" and {len(ids) - MOST_NAMED} more" if len(ids) > MOST_NAMED else "")
+        for reason, ids in reasons.items()
+    ]
+
+
 def warnings(study: Study) -> list[str]:
     """What a reader of the verdicts must know first."""
+    return [*_few(study), *untested(lines([study]))]
+
+
+def _few(study: Study) -> list[str]:
     rates = [
         judged.measured.runs
         for row in study.rows

@@ -1,0 +1,80 @@
+"""Whether an experiment's claims can be judged at all, before hours are spent on its runs."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from rotctl.errors import InputError
+from rotctl.meant import instead
+from rotctl.metrics.claims import SUCCESS_RATE
+from rotctl.metrics.judge import COLUMNS
+from rotctl.results import experiments
+from rotctl.results.keys import value_at
+from rotctl.schema import Config
+from rotctl.sweep.plan import Planned
+from rotctl.sweep.points import points
+from rotctl.written import to_dict
+
+# Of the summary row of every run, beside what its kind of motion has.
+_ALWAYS = ("duration", "torque_p99_fraction", "solver_failures", "real_time_factor")
+METRICS = (SUCCESS_RATE, *_ALWAYS, *COLUMNS)
+Values = tuple[Mapping[str, Any], Config]  # of the overridden keys, and of all
+
+
+def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
+    """See that the claims of the experiment that is named, if one is, are about what is measured.
+
+    A claim about runs that further overrides leave out is one that nobody tests this time.
+
+    Args:
+        runs: that the overrides make.
+
+    Raises:
+        InputError: a metric is none, or no run of the experiment's own grid is one of `where`.
+    """
+    name = experiments.named(list(overrides))
+    claims = experiments.experiment(name).claims if name else []
+    for claim in claims:
+        if claim.metric not in METRICS:
+            raise InputError(
+                f"{experiments.PREFIX}{name}: claim {claim.id}: metric: no {claim.metric!r} is "
+                f"measured; {instead(claim.metric, METRICS)}"
+            )
+    here: list[Values] = [(run.values, run.config) for run in runs]
+    absent = [claim for claim in claims if not _any(claim.where, here)]
+    if absent and len(overrides) > 1:
+        own = experiments.matrix([f"{experiments.PREFIX}{name}", "seed=0"])
+        here = [(point.values, point.config) for point in points(own)]
+        absent = [claim for claim in absent if not _any(_without_seed(claim.where), here)]
+    if absent:
+        claim = absent[0]
+        raise InputError(
+            f"{experiments.PREFIX}{name}: claim {claim.id}: where: no run of its grid has "
+            f"{_wrong(claim.where, here)}"
+        )
+
+
+def _any(where: Mapping[str, Any], runs: Sequence[Values]) -> bool:
+    return any(all(_value(key, run) == value for key, value in where.items()) for run in runs)
+
+
+def _without_seed(where: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in where.items() if key != "seed"}
+
+
+def _value(key: str, run: Values) -> Any:
+    """What a run has at a column of the summary that is a key of its config."""
+    values, config = run
+    key = key.removeprefix("config.")
+    return values[key] if key in values else value_at(to_dict(config), key)
+
+
+def _wrong(where: Mapping[str, Any], runs: Sequence[Values]) -> str:
+    """The value that no run has, and what to write; all where each by itself is there."""
+    for key, value in where.items():
+        known = list(dict.fromkeys(map(str, (_value(key, run) for run in runs))))
+        if known == ["None"]:
+            keys = dict.fromkeys(key for run in runs for key in run[0])
+            return f"the key {key!r}; {instead(key, keys)}"
+        if str(value) not in known:
+            return f"{key} {value}; {instead(str(value), known)}"
+    return ", ".join(f"{key} {value}" for key, value in where.items())
