@@ -170,12 +170,12 @@ def test_a_run_without_a_drawable_step_is_refused(log, picture, tmp_path):
     assert str(caught.value) == f"{broken.path}: has no step that could be drawn"
 
 
-def test_by_default_two_turns_after_settling_are_shown_or_the_whole_run():
+def test_by_default_two_turns_after_settling_are_shown_where_they_are_reached():
     time = np.arange(0, 6, 0.1)
     assert module._two_turns(time, time) == (20, 40)
     assert module._two_turns(time, -time) == (20, 40)
-    assert module._two_turns(time, 0.4 * time) == (0, 59)
-    assert module._two_turns(time[:10], time[:10]) == (0, 9)
+    assert module._two_turns(time, 0.4 * time) is None
+    assert module._two_turns(time[:10], time[:10]) is None
 
 
 @pytest.mark.parametrize(

@@ -6,19 +6,20 @@ import pytest
 from rotctl.config import load
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.report.frame import moments, stage_names
-from rotctl.report.skill import Part, parts, spread
+from rotctl.report.skill import parts
 from rotctl.run import run
 
 RATE = 60.0
 
 
-def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), turns=0.0, falls=False):
+def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), waves=(), turns=0.0, falls=False):
     """A log of which only what `parts` looks at is there; times in seconds.
 
     Args:
         stages: when each stage but the first begins.
         flies: from when to when nothing touches the ground.
         moves: from when to when it moves.
+        waves: from when to when a joint does.
         turns: rate [rev/s] up to the first stage's end.
     """
     time = np.arange(round(seconds * RATE)) / RATE
@@ -32,6 +33,8 @@ def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), turns=0.0, falls=F
     turned[:, 1] = 2 * np.pi * turns * np.minimum(time, end)
     velocity = none.copy()
     velocity[:, 0] = within(moves)
+    joints = np.zeros((len(time), 8))
+    joints[within(waves), 7] = 2.0
     wrench = np.zeros((len(time), 6))
     wrench[within(pushed), 0] = 100.0
     count = np.where(within(flies), 0, 4)
@@ -44,6 +47,7 @@ def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), turns=0.0, falls=F
         "contacts/count": count,
         "trajectory/com_velocity": velocity,
         "trajectory/angular_velocity": none,
+        "trajectory/qvel": joints,
         "trajectory/angular_excursion": turned,
         "trajectory/trunk_axis": np.tile([0.0, 1.0, 0.0], (len(time), 1)),
         "disturbance/wrench": wrench,
@@ -61,22 +65,24 @@ def seconds_of(log):
         # A flip: the crouch, the flight, until it stands still for half a second.
         (
             log_of(6.0, stages=(1.0, 2.0, 3.0), flies=(2.2, 2.8), moves=(1.8, 3.6)),
-            [(1.7, 2.2), (2.2, 2.8), (2.8, 4.1)],
+            [(1.7, 4.1)],
         ),
         # One that never stands still has fallen.
         (
             log_of(9.0, stages=(1.0, 2.0, 2.8), flies=(2.2, 2.8), moves=(1.8, 9.0)),
-            [(1.7, 2.2), (2.2, 2.8), (2.8, 5.8)],
+            [(1.7, 5.8)],
         ),
         # One that does not fly, and tumbles after its last stage began: the skill, and the fall.
         (log_of(9.0, stages=(1.0, 2.0), flies=(2.5, 2.8), moves=(0.8, 9.0)), [(0.3, 5.8)]),
         # A dive: until it is in the water, where nothing touches it for long.
         (
             log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0)),
-            [(1.5, 2.0), (2.0, 3.1)],
+            [(1.5, 3.1)],
         ),
         # A hop is no flight.
-        (log_of(6.0, stages=(1.0,), flies=(2.0, 2.1), moves=(1.8, 3.0)), [(1.3, 3.5)]),
+        (log_of(6.0, stages=(1.0,), flies=(2.0, 2.1), moves=(1.8, 3.0)), [(0.5, 3.5)]),
+        # Who only moves the arms: from before the first stage ends until they hang still.
+        (log_of(6.0, stages=(1.0, 2.5), moves=(0.0, 0.2), waves=(1.0, 3.0)), [(0.0, 3.5)]),
         # The last revolution of a roll that ends on its feet.
         (log_of(9.0, stages=(4.0,), moves=(0.0, 5.0), turns=0.5), [(2.0, 5.5)]),
         # A push, and a fall.
@@ -97,7 +103,7 @@ def test_a_dive_from_the_hands_is_shown_from_when_the_handstand_is_left():
     log = log_of(6.0, stages=(1.0, 3.0), flies=(2.0, 5.0), moves=(1.8, 6.0))
     upside_down = np.diag([-1.0, 1.0, -1.0])
     log["trajectory/trunk_axes"] = np.tile(upside_down, (len(log["command/stage"]), 1, 1))
-    assert seconds_of(log) == [(0.5, 2.0), (2.0, 3.1)]
+    assert seconds_of(log) == [(0.5, 3.1)]
 
 
 def test_of_a_chain_each_part_is_shown():
@@ -108,11 +114,10 @@ def test_of_a_chain_each_part_is_shown():
         log[name][again] = log[name][: round(5.0 * RATE)]
     found = parts(log, log["trajectory/time"], (3, 1, 3))
     seconds = [(round(part.first / RATE, 2), round(part.last / RATE, 2)) for part in found]
-    flip = [(1.5, 2.0), (2.0, 3.0), (3.0, 4.1)]
+    flip = [(1.5, 4.1)]
     later = [(first + 9.0, last + 9.0) for first, last in flip]
     assert seconds == [*flip, (5.0, 8.98), *later]
-    shares = [sum(part.share for part in some) for some in (found[:3], found[3:4], found[4:])]
-    assert shares == pytest.approx([6.0, 1.0, 6.0])
+    assert [part.share for part in found] == [6.0, 1.0, 6.0]
 
 
 def test_who_begins_again_is_shown_from_the_first():
@@ -143,14 +148,6 @@ def test_an_older_log_tells_no_stages():
 def test_a_clock_that_makes_no_sense(time):
     log = log_of(2 / RATE, stages=(1 / RATE,), moves=(0.0, 1.0))
     assert all(0 <= p.first <= p.last < 2 for p in parts(log, np.array(time)))
-
-
-def test_frames_are_spread_by_their_shares():
-    chosen = [Part(0, 30, 1.0), Part(30, 60, 2.0), Part(60, 90, 1.0)]
-    assert spread(chosen, 8) == [0, 15, 30, 38, 45, 52, 60, 90]
-    assert spread(chosen, 1) == [0]
-    assert spread([Part(5, 7, 1.0)], 50) == [5, 6, 7]
-    assert spread([Part(3, 9, 1.0)], 1) == [3]
 
 
 def test_below_a_frame_stands_the_blend_or_else_the_stage(tmp_path):

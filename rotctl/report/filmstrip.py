@@ -29,7 +29,8 @@ from rotctl.report.frame import (
     typeface,
 )
 from rotctl.report.rows import drawable, window
-from rotctl.report.skill import Part, parts, spread
+from rotctl.report.skill import Part, parts
+from rotctl.report.spacing import even, spread
 from rotctl.report.title import title
 from rotctl.rotations import Array
 
@@ -60,8 +61,9 @@ def filmstrip(
         frames: how many; fewer if there are not as many steps.
         start: time of the first frame [s].
         end: time of the last frame [s]; from start to end they are evenly spaced in time. Without
-            both: of a roll two revolutions from 2 s on, the whole run where those are not reached;
-            of anything else what `rotctl.report.skill` finds.
+            both: of a roll two revolutions from 2 s on, evenly; the whole run where those are not
+            reached, and of anything else what `rotctl.report.skill` finds, as
+            `rotctl.report.spacing` says.
         columns: frames in a row; at most 6 by default.
 
     Raises:
@@ -122,18 +124,19 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     """Rows of the log to show."""
     time = drawable(log, log["trajectory/qpos"])
     if start is not None or end is not None:
-        return spread([Part(*window(time, start, end), 1.0)], frames)
-    found = parts(log, time, stages_of_parts(log)) or [
-        Part(*_two_turns(time, turns_done(log)[: len(time)]), 1.0)
-    ]
-    return spread(found, frames)
+        return even(*window(time, start, end), frames)
+    found = parts(log, time, stages_of_parts(log))
+    turning = None if found else _two_turns(time, turns_done(log)[: len(time)])
+    if turning:
+        return even(*turning, frames)
+    return spread(log, found or [Part(0, len(time) - 1, 1.0)], frames)
 
 
-def _two_turns(time: Array, turns: Array) -> tuple[int, int]:
-    """Rows from SETTLED on until DEFAULT_TURNS are done; all rows where they never are."""
+def _two_turns(time: Array, turns: Array) -> tuple[int, int] | None:
+    """Rows from SETTLED on until DEFAULT_TURNS are done; None where they never are."""
     first = int(np.searchsorted(time, SETTLED))
     done = np.flatnonzero(np.abs(turns[first:] - turns[first : first + 1]) >= DEFAULT_TURNS)
-    return (first, first + int(done[0])) if len(done) else (0, len(time) - 1)
+    return (first, first + int(done[0])) if len(done) else None
 
 
 # ---------------------------------------------------------------- the sheet

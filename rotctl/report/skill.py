@@ -23,6 +23,7 @@ WET = 0.1  # [s] shown in the water: half of the body is in
 LONGEST = 3.0  # [s] after a landing: who is not still then has fallen
 SLOW = 0.1  # [m/s] of the centre of mass, that is still
 SLOW_TURN = 0.3  # [rad/s] of the whole body
+SLOW_JOINTS = 0.5  # [rad/s] of all joints together
 QUICK = 0.3  # of the fastest of the centre of mass: from there on something happens
 PERIODS = (1e-3, 10.0)  # [s] of a control step; a stranger's log may say anything
 TURN = 1.0  # [rev] of a roll before it ends
@@ -45,7 +46,10 @@ def parts(log: Arrays, time: Array, stages: Sequence[int] = ()) -> list[Part]:
         stages: how many each part of a chain has; of what is none they need not be told.
     """
     chained = len(stages) > 1 and not again(log, stages)  # who begins again is shown from the first
-    return _of_a_chain(log, stages, len(time)) if chained else _of_one(log, time)
+    if chained:
+        return _of_a_chain(log, stages, len(time))
+    shown = _of_one(log, time)
+    return [Part(*shown, MOVES)] if shown else []
 
 
 def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
@@ -57,63 +61,44 @@ def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
             continue
         shown = _of_one(span, span["trajectory/time"][: end - first])
         rolls = np.ptp(turns_done(span)[: end - first]) > TURN
-        share = MOVES if shown or rolls else STANDS
-        shown = shown or [Part(0, end - first - 1, 1.0)]
-        whole = sum(part.share for part in shown)
-        found += [
-            Part(first + part.first, first + part.last, part.share * share / whole)
-            for part in shown
-        ]
+        begin, last = shown or (0, end - first - 1)
+        found.append(Part(first + begin, first + last, MOVES if shown or rolls else STANDS))
     return found
 
 
-def _of_one(log: Arrays, time: Array) -> list[Part]:
+def _of_one(log: Arrays, time: Array) -> tuple[int, int] | None:
+    """First and last row of what one behaviour shows; None for a roll that goes on."""
     rows = len(time)
     period = float(np.clip((time[-1] - time[0]) / max(rows - 1, 1), *PERIODS)) if rows > 1 else 0.0
     staged = np.asarray(log["command/stage"])[:rows] if "command/stage" in log else np.zeros(rows)
     if not period:
-        return []
+        return None
     off, down = longest_flight(log)
-    first, last = _begin(log, staged, period), _still(log, 0, period, rows)
+    first = _begin(log, staged, period)
+    last = _still(log, 0, period, rows, poses=bool(staged.any()))
     if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
         if staged[off] < staged.max():
             return _flight(log, off, min(down, rows - 1), period, rows)
         last = min(last, down + round(LONGEST / period))  # it tumbles, after its last stage began
-    return [Part(first, last, 1.0)] if first is not None and last > first else []
+    return (first, last) if first is not None and last > first else None
 
 
-def spread(chosen: list[Part], frames: int) -> list[int]:
-    """So many rows of these parts at most, evenly within each; the last row of the last."""
-    rows: list[int] = []
-    left, shares = frames, sum(part.share for part in chosen)
-    for part in chosen:
-        many = min(left, max(1, round(left * part.share / shares)))
-        last = part is chosen[-1]
-        places = np.linspace(part.first, part.last, many, endpoint=last)
-        rows += np.round(places).astype(int).tolist()
-        left, shares = left - many, shares - part.share
-    return list(dict.fromkeys(rows))
-
-
-def _flight(log: Arrays, off: int, down: int, period: float, rows: int) -> list[Part]:
-    """Before, in and after a flight; a dive's ends in the water."""
-    steps = round(BEFORE / period)
+def _flight(log: Arrays, off: int, down: int, period: float, rows: int) -> tuple[int, int]:
+    """From before a flight to standing still; a dive's ends in the water."""
+    first = _before(log, off, round(BEFORE / period))
     wet = entry(log)
     if wet is not None and off < wet <= down and not np.asarray(log["contacts/count"])[wet]:
-        last = min(wet + round(WET / period), rows - 1)
-        return [_before(log, off, steps), Part(off, last, 9.0)]
-    last = min(_still(log, down, period, rows), down + round(LONGEST / period))
-    before = Part(max(off - steps, 0), off, 3.0)
-    return [before, Part(off, down, 5.0), *([Part(down, last, 4.0)] if last > down else [])]
+        return first, min(wet + round(WET / period), rows - 1)
+    return first, min(_still(log, down, period, rows), down + round(LONGEST / period))
 
 
-def _before(log: Arrays, off: int, steps: int) -> Part:
-    """The last rows before a take-off; from the hands, all since the handstand was left."""
+def _before(log: Arrays, off: int, steps: int) -> int:
+    """A moment before a take-off; from the hands, before the handstand was left."""
     first = max(off - steps, 0)
     if "trajectory/trunk_axes" in log and floats(log, "trajectory/trunk_axes")[first, 2, 2] < 0.0:
         held = int(np.argmax(np.asarray(log["command/stage"]) > 0))
-        return Part(max(held - steps, 0), off, 7.0)
-    return Part(first, off, 3.0)
+        return max(held - steps, 0)
+    return first
 
 
 def _begin(log: Arrays, staged: Array, period: float) -> int | None:
@@ -124,7 +109,7 @@ def _begin(log: Arrays, staged: Array, period: float) -> int | None:
         if turns[told] > TURN:
             return int(np.searchsorted(turns[:told], turns[told] - TURN))
         speed = _speed(log)
-        begin = int(np.argmax(speed > QUICK * speed.max()))
+        begin = min(int(np.argmax(speed > QUICK * speed.max())), told)
     elif turns[-1] > TURN:
         return None
     elif not np.asarray(log["contacts/count"])[0]:
@@ -138,10 +123,17 @@ def _begin(log: Arrays, staged: Array, period: float) -> int | None:
     return max(begin - round(BEFORE / period), 0)
 
 
-def _still(log: Arrays, after: int, period: float, rows: int) -> int:
-    """A moment after the row from which it is still for good; the last row, if it never is."""
+def _still(log: Arrays, after: int, period: float, rows: int, poses: bool = False) -> int:
+    """A moment after the row from which it is still for good; the last row, if it never is.
+
+    Args:
+        poses: its joints are to be still, too: what it shows may be arms alone.
+    """
     turning = np.sqrt((floats(log, "trajectory/angular_velocity")[:rows] ** 2).sum(axis=1))
     moving = (_speed(log)[:rows] > SLOW) | (turning > SLOW_TURN)
+    if poses and "trajectory/qvel" in log:
+        joints = floats(log, "trajectory/qvel")[:rows, 6:]
+        moving |= np.sqrt((joints**2).sum(axis=1)) > SLOW_JOINTS
     moving[:after] = True
     late = np.flatnonzero(moving)
     still = int(late[-1]) + 1 if len(late) else 0
