@@ -36,7 +36,10 @@ def size(columns, rows):
     wide, high = module.FRAME
     return (
         2 * module._MARGIN + columns * (wide + module._GAP) - module._GAP,
-        module._HEADER + rows * (high + module._CAPTION + module._GAP) + module._FOOTER,
+        module._HEADER
+        + rows * (high + module._CAPTION + module._GAP)
+        + module._FOOTER
+        + module._LINE * (len(module._lines(columns * (wide + module._GAP), 0.45)) - 1),
     )
 
 
@@ -68,6 +71,29 @@ def test_frames_show_a_character_that_moves_under_a_sky(log, picture):
         assert pixels[2].min() > 120  # sky, not black
         assert pixels.std() > 25  # and something in front of it
     assert all(np.abs(a - b).mean() > 1.0 for a, b in zip(frames, frames[1:], strict=False))
+
+
+@pytest.mark.parametrize("columns", range(1, 7))
+def test_words_of_the_legend_and_of_the_header_lie_beside_each_other(columns):
+    """Of a narrow picture, too: what does not fit goes on in the next line, or is cut."""
+    width = columns * (module.FRAME[0] + module._GAP) - module._GAP
+    lines = module._lines(width, 0.45)
+    assert len(lines) == {1: 4, 2: 2}.get(columns, 1)
+    assert [text for line in lines for _, _, text in line] == [
+        "contact used by the controller",
+        "contact left out",
+        "ground force (body weight: 0.45 m)",
+        "left limbs are darker",
+    ]
+    font = frame.typeface(15)
+    for line in lines:
+        ends = [x + module._legend_mark(mark) + font.getlength(text) for x, mark, text in line]
+        assert all(end < x for end, (x, _, _) in zip(ends, line[1:], strict=False))
+        assert ends[-1] <= width
+    for text in ("short", "FAILED: " + "long " * 40):
+        assert frame.typeface(19).getlength(module._cut(text, width, 19)) <= width
+    assert module._cut("short", width, 19) == "short"
+    assert module._cut("short", 0.0, 19) == ""
 
 
 def test_used_contacts_are_marked(log, picture):

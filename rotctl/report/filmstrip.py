@@ -44,6 +44,13 @@ SMALL = 1_500_000  # [bytes] a larger picture is reduced to 256 colours
 
 _THIN = 4  # pixels between the frames of a strip
 _MARGIN, _GAP, _CAPTION, _HEADER, _FOOTER = 22, 10, 30, 84, 40  # pixels
+_LINE, _MARK, _APART = 22, 38, 26  # pixels: a line of the legend, its marks, between two entries
+_LEGEND = (
+    ("used", "contact used by the controller"),
+    ("left out", "contact left out"),
+    ("force", "ground force (body weight: {weight:.2g} m)"),
+    ("", "left limbs are darker"),
+)
 
 
 def filmstrip(
@@ -151,24 +158,36 @@ def _sheet(
 ) -> Image.Image:
     wide, high = FRAME[0] + _GAP, FRAME[1] + _CAPTION + _GAP
     rows = -(-len(pictures) // columns)
-    size = (2 * _MARGIN + columns * wide - _GAP, _HEADER + rows * high + _FOOTER)
+    width = columns * wide - _GAP
+    legend = _lines(width, weight)
+    size = (2 * _MARGIN + width, _HEADER + rows * high + _FOOTER + _LINE * (len(legend) - 1))
     sheet = Image.new("RGB", size, PAPER)
     pen = ImageDraw.Draw(sheet)
-    _header(pen, log)
+    _header(pen, log, width)
     for i, (picture, moment) in enumerate(zip(pictures, moments, strict=True)):
         x, y = _MARGIN + i % columns * wide, _HEADER + i // columns * high
         sheet.paste(picture, (x, y))
         _caption(pen, x, y + FRAME[1] + 5, moment)
-    _legend(pen, _MARGIN, size[0] - _MARGIN, size[1] - _FOOTER, weight)
+    for i, entries in enumerate(legend):
+        _legend(pen, _MARGIN, size[1] - _FOOTER - _LINE * (len(legend) - 1 - i), entries)
     return sheet
 
 
-def _header(pen: ImageDraw.ImageDraw, log: RunLog) -> None:
-    top = title(log)
-    pen.text((_MARGIN, 16), top.name, INK, typeface(27))
-    beside = _MARGIN + pen.textlength(top.name, typeface(27)) + 18
-    pen.text((beside, 25), top.about, SOFT, typeface(18))
-    pen.text((_MARGIN, 51), top.verdict, MOODS[top.success], typeface(19))
+def _header(pen: ImageDraw.ImageDraw, log: RunLog, width: int) -> None:
+    top, beside = title(log), 0.0
+    for text, y, ink, size in ((top.name, 16, INK, 27), (top.about, 25, SOFT, 18)):
+        shown = _cut(text, width - beside, size)
+        pen.text((_MARGIN + beside, y), shown, ink, typeface(size))
+        beside += typeface(size).getlength(shown) + 18
+    pen.text((_MARGIN, 51), _cut(top.verdict, width, 19), MOODS[top.success], typeface(19))
+
+
+def _cut(text: str, width: float, size: int) -> str:
+    """As much of a text as is no wider."""
+    font, shown = typeface(size), text
+    while shown and font.getlength(shown if shown == text else f"{shown}...") > width:
+        shown = shown[:-1]
+    return shown if shown == text or not shown else f"{shown}..."
 
 
 def _caption(pen: ImageDraw.ImageDraw, x: float, y: float, moment: Moment) -> None:
@@ -178,15 +197,37 @@ def _caption(pen: ImageDraw.ImageDraw, x: float, y: float, moment: Moment) -> No
     pen.text((x + FRAME[0] - 2, y), moment.note, SOFT, font, anchor="ra")
 
 
-def _legend(pen: ImageDraw.ImageDraw, x: float, right: float, y: float, weight: float) -> None:
-    font = typeface(15)
-    for used, text in ((True, "contact used by the controller"), (False, "contact left out")):
-        dot(pen, x + 6, y + 10, 5.5, used)
-        pen.text((x + 18, y), text, SOFT, font)
-        x += 18 + pen.textlength(text, font) + 26
-    arrow(pen, np.array([x, y + 10.0]), np.array([x + 30, y + 10.0]), USED, 1.3)
-    pen.text((x + 38, y), f"ground force (body weight: {weight:.2g} m)", SOFT, font)
-    pen.text((right, y), "left limbs are darker", SOFT, font, anchor="ra")
+def _lines(width: float, weight: float) -> list[list[tuple[float, str, str]]]:
+    """Entries of the legend in lines that are no wider, if they can be: x, mark and text."""
+    lines: list[list[tuple[float, str, str]]] = [[]]
+    x = 0.0
+    for mark, text in _LEGEND:
+        told = text.format(weight=weight)
+        wide = _legend_mark(mark) + typeface(15).getlength(told)
+        if lines[-1] and x + wide > width:
+            lines.append([])
+            x = 0.0
+        # The last one stands at the right where others are before it.
+        at = width - wide if not mark and lines[-1] else x
+        lines[-1].append((at, mark, told))
+        x += wide + _APART
+    return lines
+
+
+def _legend_mark(mark: str) -> int:
+    return {"": 0, "used": 18, "left out": 18}.get(mark, _MARK)
+
+
+def _legend(
+    pen: ImageDraw.ImageDraw, left: float, y: float, entries: Sequence[tuple[float, str, str]]
+) -> None:
+    for beside, mark, text in entries:
+        x = left + beside
+        if mark == "force":
+            arrow(pen, np.array([x, y + 10.0]), np.array([x + 30, y + 10.0]), USED, 1.3)
+        elif mark:
+            dot(pen, x + 6, y + 10, 5.5, mark == "used")
+        pen.text((x + _legend_mark(mark), y), text, SOFT, typeface(15))
 
 
 def write(out: Path, sheet: Image.Image) -> None:
