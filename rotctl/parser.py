@@ -1,8 +1,10 @@
 """The command line as a whole: which commands there are, and what each of them refuses."""
 
 import argparse
+import sys
 from collections.abc import Sequence
-from pathlib import Path
+from itertools import pairwise
+from pathlib import Path, PurePath
 from typing import Any, NoReturn
 
 from rotctl import __version__
@@ -57,6 +59,11 @@ COMMANDS = (
     *(searches.add_tune, clips.add_import, clips.add_author, clips.add_preview),
     completion.add_completion,
 )
+ELSEWHERE = {  # what writes to a file that one names
+    "--filmstrip": "; it is drawn beside what is made; rotctl render RUN --filmstrip {} draws a "
+    "run's elsewhere",
+    "--json": "; it is printed on stdout, so write: --json > {}",
+}
 NO_LOG = "an unfinished run leaves no log"
 
 
@@ -76,6 +83,10 @@ class _Parser(argparse.ArgumentParser):
         """The options that there are."""
         return [name for action in self._actions for name in action.option_strings]
 
+    def flags(self) -> list[str]:
+        """The options that take no value."""
+        return [name for one in self._actions if one.nargs == 0 for name in one.option_strings]
+
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: {bounded(one_line(message))}; see {self.prog} --help\n")
 
@@ -84,6 +95,8 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
     """Arguments, where overrides and options may be mixed: argparse takes one block alone."""
     arguments, others = _parser().parse_known_args(argv)
     takes_more = "overrides" in arguments
+    more = [*arguments.overrides, *others] if takes_more else others
+    _refuse_files_of_flags(arguments.parser, sys.argv[1:] if argv is None else argv, more)
     unknown = [text for text in others if text.startswith("-") or not takes_more]
     if unknown:
         command = arguments.parser
@@ -91,8 +104,18 @@ def parse(argv: Sequence[str] | None) -> argparse.Namespace:
         hint = next((f" ({text})" for text in near if text), "")
         command.error(f"unrecognized arguments: {' '.join(unknown)}{hint}")
     if takes_more:
-        arguments.overrides = [*arguments.overrides, *others]
+        arguments.overrides = more
     return arguments
+
+
+def _refuse_files_of_flags(command: _Parser, words: Sequence[str], more: Sequence[str]) -> None:
+    """A file after an option that takes none is neither an override nor an argument."""
+    flags = command.flags()
+    for flag, word in pairwise(words):
+        is_file = PurePath(word).suffix and "=" not in word and word[0] not in "-@~+"
+        if flag in flags and word in more and is_file:
+            elsewhere = ELSEWHERE.get(flag, "").format(word)
+            command.error(f"{flag} takes no file, but {word!r} follows it{elsewhere}")
 
 
 def _instead_of(text: str, options: list[str], takes_overrides: bool) -> str:

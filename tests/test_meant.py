@@ -62,6 +62,17 @@ def test_what_is_like_none_of_them_has_no_hint(word):
             "unrecognized arguments: --filmstip (did you mean --filmstrip?); see",
         ),
         (
+            ["run", "--filmstrip", "roll.png"],
+            "--filmstrip takes no file, but 'roll.png' follows it; it is drawn beside what is "
+            "made; rotctl render RUN --filmstrip roll.png draws a run's elsewhere; see rotctl run",
+        ),
+        (
+            ["author-motion", "keys.yaml", "--out", "a.yaml", "--filmstrip", "a.png"],
+            "--filmstrip takes no file, but 'a.png' follows it; ",
+        ),
+        (["run", "seed=1", "--json", "row.json"], "so write: --json > row.json; see rotctl run"),
+        (["run", "--filmstrip", "forward_roll_2"], "write behaviour=forward_roll_2\n"),
+        (
             ["export", "r.h5", "--to", "gtlf"],
             "'gtlf': no such choice; did you mean gltf? valid: bvh",
         ),
