@@ -14,6 +14,7 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import plot as module
 from rotctl.report import stored_model
+from rotctl.report.panels import panels
 from rotctl.report.plan import plan
 from rotctl.report.plot import plot
 from rotctl.report.prints import borne, outlines, prints
@@ -79,6 +80,49 @@ def test_units_are_turns_and_the_start_is_zero(log):
 def test_a_command_that_is_no_number_is_none(log, tmp_path, value):
     outcome = {"angular_velocity_commanded": value}
     assert np.isnan(signals(changed(log, tmp_path, outcome=outcome), ALL).commanded_spin)
+
+
+@pytest.mark.parametrize(
+    ("outcome", "until"),
+    [
+        ({}, 0.5),
+        ({"finish_commanded": 0.3}, 0.3),
+        ({"finish_commanded": 0.8}, 0.5),
+        ({"finish_commanded": 0.0, "revolutions_told": 0.1}, 0.5),
+    ],
+)
+def test_what_is_commanded_ends_where_the_roll_does(log, tmp_path, outcome, until):
+    """In the plots and beside the replay: told to end, or, of one that counts, standing up."""
+    row = int(np.argmax(log["trajectory/time"] >= 0.5 - 1e-9))
+    stage = (np.arange(log.steps) >= row).astype(np.int32)
+    both = {"angular_velocity_commanded": 0.6, "speed_commanded": 1.0}
+    ends = changed(log, tmp_path, {"command/stage": stage}, outcome=both | outcome)
+    found = signals(ends, ALL)
+    np.testing.assert_allclose(found.commanded_time, [0.0, until])
+    lines = [
+        line
+        for panel in panels(found, None)
+        for line in panel["series"]
+        if line["role"] == "commanded"
+    ]
+    assert [float(line["time"][-1]) for line in lines] == pytest.approx([until] * 3)
+    assert float(lines[1]["values"][-1]) == pytest.approx(0.6 * until)
+    later = signals(ends, slice(row + 1, None))
+    assert len(later.commanded_time) == 0
+    assert not any(
+        line["role"] == "commanded" for panel in panels(later, None) for line in panel["series"]
+    )
+    plot(ends, tmp_path / "late.svg", start=0.6)
+    assert "wanted" in words(tmp_path / "late.svg")  # of the momenta's rates alone
+    assert words(tmp_path / "late.svg").count("wanted") == 1
+
+
+def test_iterations_have_an_axis_where_the_solver_tells_them(log, tmp_path):
+    plot(log, tmp_path / "none.svg")
+    some = {"solver/iterations": np.full(log.steps, 7, dtype=np.int32)}
+    plot(changed(log, tmp_path, some), tmp_path / "some.svg")
+    assert not any("iterations" in word for word in words(tmp_path / "none.svg"))
+    assert {"iterations", "iterations (right)"} <= set(words(tmp_path / "some.svg"))
 
 
 def test_joints_are_grouped_over_sides_and_axes(log):

@@ -32,18 +32,21 @@ def momentum(axes: Any, log: RunLog, rows: slice, run: Signals) -> None:
 def spin(axes: Any, run: Signals) -> None:
     """Angular velocity, and what was wanted."""
     _three(axes, run.time, run.spin)
-    if np.isfinite(run.commanded_spin):
-        axes.axhline(run.commanded_spin, color=BLACK, ls="--", lw=0.9, label="wanted")
+    ends = run.commanded_time
+    if np.isfinite(run.commanded_spin) and len(ends):
+        wanted = np.full(len(ends), run.commanded_spin)
+        axes.plot(ends, wanted, color=BLACK, ls="--", lw=0.9, label="wanted")
     legend(axes)
 
 
 def in_plane(axes: Any, run: Signals) -> None:
     """In-plane excursion, and what the wanted angular velocity adds up to."""
     axes.plot(run.time, run.turns[:, 1], color=BLUE, label="achieved", lw=1.0)
-    if np.isfinite(run.commanded_spin):
-        wanted = run.turns[0, 1] + run.commanded_spin * (run.time - run.time[0])
-        axes.plot(run.time, wanted, color=BLACK, ls="--", lw=0.9, label="wanted")
-    axes.legend(loc="upper left")
+    ends = run.commanded_time
+    if np.isfinite(run.commanded_spin) and len(ends):
+        wanted = run.turns[0, 1] + run.commanded_spin * (ends - ends[0])
+        axes.plot(ends, wanted, color=BLACK, ls="--", lw=0.9, label="wanted")
+    legend(axes)
 
 
 def out_of_plane(axes: Any, run: Signals) -> None:
@@ -134,9 +137,14 @@ def gantt(axes: Any, parts: dict[str, list[Bar]]) -> None:
 
 
 def solver(axes: Any, log: RunLog, rows: slice, time: Array) -> None:
-    """How hard it was, how good, and where it failed."""
+    """How good it was, how hard where the solver tells iterations, and where it failed."""
     status, residual = log["solver/status"][rows], log["solver/residual"][rows]
-    axes.plot(time, log["solver/iterations"][rows], color=BLUE, lw=0.6, label="iterations")
+    iterations = log["solver/iterations"][rows]
+    told = bool(iterations.any())
+    axes.plot(time, np.where(residual > 0, residual, np.nan), color=ORANGE, lw=0.5)
+    axes.plot([], [], color=ORANGE, lw=0.8, label="residual" + told * " (left)")
+    axes.set_yscale("log")
+    axes.minorticks_off()  # whose labels would lie over one another
     for code, label, marker, colour in (
         (1, "solved by a fallback", "v", GREEN),
         (2, "all failed", "x", BAD),
@@ -144,16 +152,16 @@ def solver(axes: Any, log: RunLog, rows: slice, time: Array) -> None:
         at = time[status == code]
         axes.plot(
             at, np.zeros(len(at)), marker, color=colour, ms=4, clip_on=False,
-            label=f"{label}: {len(at)}",
+            transform=axes.get_xaxis_transform(), label=f"{label}: {len(at)}",
         )  # fmt: skip
-    beside = axes.twinx()
-    beside.spines["right"].set_visible(True)
-    beside.plot(time, np.where(residual > 0, residual, np.nan), color=ORANGE, lw=0.5)
-    axes.plot([], [], color=ORANGE, lw=0.8, label="residual (right)")
-    beside.set_yscale("log")
-    beside.minorticks_off()  # whose labels would lie over one another
-    beside.grid(visible=False)
-    axes.set_ylim(0, max(1.0, axes.get_ylim()[1]))
+    if told:
+        beside = axes.twinx()
+        beside.spines["right"].set_visible(True)
+        beside.plot(time, iterations, color=BLUE, lw=0.6)
+        beside.set_ylim(0, None)
+        beside.set_ylabel("iterations")
+        beside.grid(visible=False)
+        axes.plot([], [], color=BLUE, lw=0.8, label="iterations (right)")
     legend(axes)
 
 

@@ -37,9 +37,9 @@ class Line:
 
 def panels(run: Signals, other: Signals | None) -> list[Panel]:
     """The plots of a run, with another one laid over."""
-    time, ends = run.time, run.time[[0, -1]]
-    spin, speed = np.full(2, run.commanded_spin), np.full(2, run.commanded_speed)
-    turns = run.commanded_spin * (ends - ends[0])
+    time, ends = run.time, run.commanded_time
+    spin, speed = (np.full(len(ends), each) for each in (run.commanded_spin, run.commanded_speed))
+    turns = run.commanded_spin * (ends - ends[:1])
 
     def over(values: str, column: int | None = None, steps: bool = False) -> list[Line]:
         if other is None:

@@ -132,7 +132,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     draw.height(axes(5, right, "Centre of mass above the ground", "m"), run)
     draw.torques(axes(6, left, "Torque as a fraction of its limit", ""), log, rows, run.time)
     draw.gantt(axes(6, right, "Contacts by body part", ""), contact_bars(log, rows, model))
-    draw.solver(axes(7, slice(0, 6), "Solver", "iterations"), log, rows, run.time)
+    draw.solver(axes(7, slice(0, 6), "Solver", "residual"), log, rows, run.time)
     for each in figure.axes:
         if each.get_subplotspec().is_last_row():
             each.set_xlabel("time [s]")

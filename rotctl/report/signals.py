@@ -7,6 +7,7 @@ import numpy as np
 
 from rotctl.log import RunLog
 from rotctl.metrics.columns import along_frame, in_frame
+from rotctl.metrics.finish import begins
 from rotctl.report.title import plain
 from rotctl.rotations import Array
 
@@ -30,6 +31,7 @@ class Signals:
         used: (n,) of these, kept by the supervisor.
         commanded_spin: in-plane [rev/s]; NaN where the outcome does not tell.
         commanded_speed: forward [m/s]; likewise.
+        commanded_until: when that ended, as a roll did that was told to end [s]; else infinite.
     """
 
     time: Array
@@ -44,6 +46,13 @@ class Signals:
     used: Array
     commanded_spin: float
     commanded_speed: float
+    commanded_until: float
+
+    @property
+    def commanded_time(self) -> Array:
+        """First and last time of what is commanded [s]; empty where nothing is."""
+        ends: Array = np.minimum(self.time[[0, -1]], self.commanded_until)
+        return ends if ends[0] < self.commanded_until else ends[:0]
 
 
 @dataclass(frozen=True)
@@ -78,7 +87,18 @@ def signals(log: RunLog, rows: slice) -> Signals:
         used=(log["contacts/used"][rows] & filled).sum(axis=1).astype(float),
         commanded_spin=_number(outcome.get("angular_velocity_commanded")),
         commanded_speed=_number(outcome.get("speed_commanded")),
+        commanded_until=_rolls_until(log),
     )
+
+
+def _rolls_until(log: RunLog) -> float:
+    """When a roll was told to end, or one that counts its turns began to stand up [s]."""
+    if "command/stage" not in log:
+        return math.inf
+    row, time = begins(log), log["trajectory/time"]
+    stands = float(time[row]) if row < len(time) else math.inf
+    told = _number(log.outcome.get("finish_commanded"))
+    return stands if math.isnan(told) or "revolutions_told" in log.outcome else min(told, stands)
 
 
 def linear_rates(log: RunLog, rows: slice, weight: Array) -> Rates:
