@@ -16,7 +16,7 @@ from rotctl.log import RunLog
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.chain import Link, spans
 from rotctl.metrics.judge import ChainCriteria, judge
-from rotctl.report.frame import stage_names
+from rotctl.report.stage_names import stage_names
 from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at
 from rotctl.results.table import table

@@ -13,7 +13,7 @@ from rotctl.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import filmstrip as module
-from rotctl.report import frame, gl
+from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
@@ -33,27 +33,27 @@ def picture(tmp_path, drawing):
 
 
 def size(columns, rows):
-    wide, high = module.FRAME
+    wide, high = sheet.FRAME
     return (
-        2 * module._MARGIN + columns * (wide + module._GAP) - module._GAP,
-        module._HEADER
-        + rows * (high + module._CAPTION + module._GAP)
-        + module._FOOTER
-        + module._LINE * (len(module._lines(columns * (wide + module._GAP), 0.45)) - 1),
+        2 * sheet._MARGIN + columns * (wide + sheet._GAP) - sheet._GAP,
+        sheet._HEADER
+        + rows * (high + sheet._CAPTION + sheet._GAP)
+        + sheet._FOOTER
+        + sheet._LINE * (len(sheet._lines(columns * (wide + sheet._GAP), 0.45, False)) - 1),
     )
 
 
 def frames_of(path, columns, rows):
     """The pixels of each frame."""
-    wide, high = module.FRAME
+    wide, high = sheet.FRAME
     with Image.open(path) as image:
         pixels = np.asarray(image.convert("RGB"), dtype=int)
-    step = high + module._CAPTION + module._GAP
+    step = high + sheet._CAPTION + sheet._GAP
     return [
         pixels[y : y + high, x : x + wide]
-        for y in range(module._HEADER, module._HEADER + rows * step, step)
+        for y in range(sheet._HEADER, sheet._HEADER + rows * step, step)
         for x in range(
-            module._MARGIN, module._MARGIN + columns * (wide + module._GAP), wide + module._GAP
+            sheet._MARGIN, sheet._MARGIN + columns * (wide + sheet._GAP), wide + sheet._GAP
         )
     ]
 
@@ -76,8 +76,8 @@ def test_frames_show_a_character_that_moves_under_a_sky(log, picture):
 @pytest.mark.parametrize("columns", range(1, 7))
 def test_words_of_the_legend_and_of_the_header_lie_beside_each_other(columns):
     """Of a narrow picture, too: what does not fit goes on in the next line, or is cut."""
-    width = columns * (module.FRAME[0] + module._GAP) - module._GAP
-    lines = module._lines(width, 0.45)
+    width = columns * (sheet.FRAME[0] + sheet._GAP) - sheet._GAP
+    lines = sheet._lines(width, 0.45, pushed=False)
     assert len(lines) == {1: 4, 2: 2}.get(columns, 1)
     assert [text for line in lines for _, _, text in line] == [
         "contact used by the controller",
@@ -87,13 +87,35 @@ def test_words_of_the_legend_and_of_the_header_lie_beside_each_other(columns):
     ]
     font = frame.typeface(15)
     for line in lines:
-        ends = [x + module._legend_mark(mark) + font.getlength(text) for x, mark, text in line]
+        ends = [x + sheet._legend_mark(mark) + font.getlength(text) for x, mark, text in line]
         assert all(end < x for end, (x, _, _) in zip(ends, line[1:], strict=False))
         assert ends[-1] <= width
     for text in ("short", "FAILED: " + "long " * 40):
-        assert frame.typeface(19).getlength(module._cut(text, width, 19)) <= width
-    assert module._cut("short", width, 19) == "short"
-    assert module._cut("short", 0.0, 19) == ""
+        assert frame.typeface(19).getlength(sheet._cut(text, width, 19)) <= width
+    assert sheet._cut("short", width, 19) == "short"
+    assert sheet._cut("short", 0.0, 19) == ""
+
+
+def test_a_force_from_outside_is_an_arrow_and_told(log, picture, tmp_path):
+    """It acts 0.3 m above the centre of mass, where its moment is that."""
+    wrench = np.zeros((log.steps, 6))
+    wrench[:, 0], wrench[:, 4] = -400.0, 0.3 * -400.0
+    filmstrip(log, picture, frames=1, start=0.2)
+    assert coloured(frames_of(picture, 1, 1)[0], frame.OUTSIDE) == 0
+    pushed = changed(log, tmp_path, {"disturbance/wrench": wrench})
+    filmstrip(pushed, picture, frames=1, start=0.2)
+    assert coloured(frames_of(picture, 1, 1)[0], frame.OUTSIDE) > 120
+    (moment,) = frame.moments(pushed, [12])
+    assert moment.pushed == pytest.approx(log["trajectory/com"][12] + [0.0, 0.0, 0.3])
+    assert moment.push == pytest.approx([-400.0, 0.0, 0.0])
+    lines = sheet._lines(2000.0, 0.45, pushed=True)
+    told = "force from outside (4 times as long, 0.8 m at most)"
+    assert told in [text for _, _, text in lines[0]]
+
+
+def test_no_time_is_told_twice():
+    assert sheet.told_times([0.0, 0.0167, 0.5]) == ["0.00 s", "0.02 s", "0.50 s"]
+    assert sheet.told_times([0.0167, 0.0208, 1.0]) == ["0.017 s", "0.021 s", "1.000 s"]
 
 
 def test_used_contacts_are_marked(log, picture):
@@ -128,7 +150,7 @@ def test_there_are_no_more_frames_than_steps(log, picture):
 def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, colour):
     filmstrip(changed(log, tmp_path, outcome=outcome), picture, frames=1)
     with Image.open(picture) as image:
-        verdict = np.asarray(image.convert("RGB"), dtype=int)[50 : module._HEADER]
+        verdict = np.asarray(image.convert("RGB"), dtype=int)[50 : sheet._HEADER]
     shown = {c: coloured(verdict, c) for c in (frame.GOOD, frame.BAD, frame.SOFT)}
     assert shown[colour] > 20
     assert sum(shown.values()) == shown[colour]

@@ -5,8 +5,9 @@ import pytest
 
 from rotctl.config import load
 from rotctl.log import LOG_NAME, RunLog
-from rotctl.report.frame import moments, stage_names
+from rotctl.report.frame import moments
 from rotctl.report.skill import parts
+from rotctl.report.stage_names import stage_names
 from rotctl.run import run
 
 RATE = 60.0
@@ -87,6 +88,7 @@ def seconds_of(log):
         (log_of(9.0, stages=(4.0,), moves=(0.0, 5.0), turns=0.5), [(2.0, 5.5)]),
         # A push, and a fall.
         (log_of(6.0, pushed=(1.0, 1.1), moves=(1.0, 2.5)), [(0.5, 3.0)]),
+        (log_of(6.0, pushed=(1.0, 1.1), moves=(1.0, 2.5), waves=(1.0, 3.5)), [(0.5, 4.0)]),
         (log_of(6.0, moves=(0.0, 1.0), falls=True), [(0.0, 1.5)]),
         # Rolls, pushed ones too, and what only stands.
         (log_of(9.0, moves=(0.0, 9.0), turns=0.5), []),

@@ -1,17 +1,14 @@
 """One frame of a run: the drawn model, its contacts and forces, and metres on the ground."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from rotctl.documents import from_yaml
-from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.columns import Arrays, in_frame
-from rotctl.plain import NOTHING, find
-from rotctl.report.title import plain
+from rotctl.report.stage_names import stage_names
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
@@ -25,8 +22,12 @@ PAPER, INK, SOFT = (255, 255, 255), (28, 34, 44), (104, 114, 128)
 GOOD, BAD = (22, 122, 76), (190, 32, 38)
 MOODS = {True: GOOD, False: BAD, None: SOFT}  # of a run's verdict
 USED, UNUSED = (235, 88, 18), (138, 146, 156)
+OUTSIDE = (130, 30, 165)  # a force from outside
+OUTSIDE_SCALE = 4.0  # its arrow is so much longer: a push that tips one over weighs a quarter
+LONGEST_OUTSIDE = 0.8  # [m] of an adult's, at most: it begins in the picture
+LEAST_PUSH = 0.5  # [N] less is none
+FARTHEST = 1.0  # [m] from the centre of mass to where it acts; a stranger's log may say anything
 STEADY = 1e-3  # what varies less over a stage is no blend
-LONGEST = 20  # characters of a stage's name
 _GROUND_INK = (108, 120, 134)
 
 
@@ -40,6 +41,8 @@ class Moment:
     contacts: Array  # (k, 3)
     forces: Array  # (k, 3) [N]
     used: Array  # (k,)
+    push: Array  # (3,) force from outside [N]
+    pushed: Array  # (3,) where it acts: on its line, nearest to the centre of mass
 
 
 def turns_done(log: Arrays) -> Array:
@@ -58,6 +61,7 @@ def moments(log: RunLog, rows: list[int]) -> list[Moment]:
     position, used = log["contacts/position"], log["contacts/used"]
     force = log["contacts/force_realised"]
     sound = filled & np.isfinite(position).all(axis=2) & np.isfinite(force).all(axis=2)
+    push, pushed = _pushes(log)
     return [
         Moment(
             time=float(time[i]),
@@ -66,9 +70,23 @@ def moments(log: RunLog, rows: list[int]) -> list[Moment]:
             contacts=position[i, sound[i]].astype(float),
             forces=force[i, sound[i]].astype(float),
             used=used[i, sound[i]],
+            push=push[i],
+            pushed=pushed[i],
         )
         for i in rows
     ]
+
+
+def _pushes(log: RunLog) -> tuple[Array, Array]:
+    """Forces from outside (n, 3), and where each acts: at c + F x M / F2, M about c."""
+    com = np.asarray(log["trajectory/com"], dtype=float)
+    if "disturbance/wrench" not in log:
+        return np.zeros_like(com), com
+    wrench = np.nan_to_num(log["disturbance/wrench"], nan=0.0, posinf=0.0, neginf=0.0)
+    force, moment = wrench[:, :3], wrench[:, 3:]
+    square = (force**2).sum(axis=1, keepdims=True).clip(LEAST_PUSH**2)
+    off = np.cross(force, moment) / square
+    return force, com + off.clip(-FARTHEST, FARTHEST)
 
 
 def _notes(log: RunLog) -> list[str]:
@@ -86,36 +104,6 @@ def _notes(log: RunLog) -> list[str]:
     return [str(note) for note in notes]
 
 
-def stage_names(log: RunLog) -> list[str]:
-    """Names of a behaviour's stages by their number in the log; empty if it does not say."""
-    return [name for names in _by_part(log) for name in names]
-
-
-def stages_of_parts(log: RunLog) -> list[int]:
-    """How many stages each part of a chain has; one part, if it is none."""
-    return [len(names) for names in _by_part(log)]
-
-
-def _by_part(log: RunLog) -> list[list[str]]:
-    try:
-        config = from_yaml("config", log.config_yaml)
-    except InputError:
-        return []
-    behaviour = find(config, ("behaviour",))
-    parts = find(behaviour, ("parts",))
-    if isinstance(parts, list):
-        return [_stages(find(part, ("behaviour",))) or ["roll"] for part in parts]
-    return [_stages(behaviour)]
-
-
-def _stages(behaviour: Any) -> list[str]:
-    finish = find(behaviour, ("finish", "stages"))
-    staged = find(behaviour, ("stages",)) if finish is NOTHING else finish
-    names = [find(one, ("name",)) for one in staged] if isinstance(staged, list) else []
-    shown = [plain(name)[:LONGEST] if isinstance(name, str) else "" for name in names]
-    return shown if finish is NOTHING else ["roll", *shown]
-
-
 def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) -> Image.Image:
     """A frame of `size` pixels; a stage that is larger gives smooth edges."""
     scale = stage.width / size[0]
@@ -124,14 +112,22 @@ def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) ->
     layer = Image.new("RGBA", picture.size)
     pen = ImageDraw.Draw(layer)
     labels = _metre_marks(pen, stage, camera, scale)
-    _contacts(pen, camera, moment, stage, scale)
+    _forces(pen, camera, moment, stage, scale)
     picture.paste(layer, mask=layer)
     if picture.size != size:
         picture = picture.resize(size, Image.Resampling.BOX)
     pen = ImageDraw.Draw(picture)
     for (x, y), text in labels:
         pen.text((x, y), text, _GROUND_INK, typeface(12), anchor="ma")
+    if is_pushed(moment):
+        told = f"from outside: {np.linalg.norm(moment.push):.0f} N"
+        pen.text((8, 6), told, OUTSIDE, typeface(14))
     return picture
+
+
+def is_pushed(moment: Moment) -> bool:
+    """Whether a force from outside is to be seen."""
+    return bool(LEAST_PUSH < np.linalg.norm(moment.push) < np.inf)
 
 
 def _metre_marks(
@@ -153,10 +149,10 @@ def _metre_marks(
     return labels
 
 
-def _contacts(
+def _forces(
     pen: ImageDraw.ImageDraw, camera: "Camera", moment: Moment, stage: "Scene", scale: float
 ) -> None:
-    """Dots at contacts and arrows along their forces, over the picture: never hidden by it."""
+    """Dots at contacts, arrows along forces, over the picture: never hidden by it."""
     near = np.linalg.norm(moment.contacts - camera.target, axis=1) < 0.7 * camera.distance
     forces = moment.forces[near] / max(stage.weight, 1.0)
     forces *= np.minimum(1.0, MAX_FORCE / np.linalg.norm(forces, axis=1, keepdims=True).clip(1e-9))
@@ -169,6 +165,12 @@ def _contacts(
     for chosen in (False, True):
         for x, y in feet[used == chosen].tolist():
             dot(pen, x, y, 4.5 * scale, chosen)
+    if is_pushed(moment) and np.isfinite(moment.pushed).all():
+        size = float(np.linalg.norm(moment.push))
+        long = min(OUTSIDE_SCALE * FORCE_SCALE * size / max(stage.weight, 1.0), LONGEST_OUTSIDE)
+        ends = [moment.pushed - stage.size * long * moment.push / size, moment.pushed]
+        tail, tip = camera.pixels(np.array(ends))
+        arrow(pen, tail, tip, (*OUTSIDE, 255), 1.4 * scale)
 
 
 def dot(pen: ImageDraw.ImageDraw, x: float, y: float, radius: float, used: bool) -> None:

@@ -8,12 +8,14 @@ from PIL import Image, ImageDraw
 
 from rotctl import files
 from rotctl.report import gl
-from rotctl.report.filmstrip import FRAME, MAX_COLUMNS, OVERSAMPLING, write
+from rotctl.report.filmstrip import MAX_COLUMNS, OVERSAMPLING, write
 from rotctl.report.frame import INK, PAPER, SOFT, Moment, draw, typeface
+from rotctl.report.sheet import FRAME
 from rotctl.rotations import Array
 
 _MARGIN, _GAP, _CAPTION, _HEADER = 22, 10, 30, 84  # pixels
-_NOTHING = Moment(0.0, 0.0, "", np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=bool))
+_NO_CONTACTS = (np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=bool))
+_NOTHING = Moment(0.0, 0.0, "", *_NO_CONTACTS, push=np.zeros(3), pushed=np.zeros(3))
 
 
 def motion_strip(

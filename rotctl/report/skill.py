@@ -75,7 +75,7 @@ def _of_one(log: Arrays, time: Array) -> tuple[int, int] | None:
         return None
     off, down = longest_flight(log)
     first = _begin(log, staged, period)
-    last = _still(log, 0, period, rows, poses=bool(staged.any()))
+    last = _still(log, 0, period, rows, poses=True)
     if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
         if staged[off] < staged.max():
             return _flight(log, off, min(down, rows - 1), period, rows)

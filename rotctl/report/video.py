@@ -21,11 +21,11 @@ from rotctl.report.frame import (
     Moment,
     draw,
     moments,
-    stages_of_parts,
     typeface,
 )
 from rotctl.report.rows import at_rate, drawable, window
 from rotctl.report.skill import parts
+from rotctl.report.stage_names import stages_of_parts
 from rotctl.report.title import Title, title
 from rotctl.rotations import Array
 
