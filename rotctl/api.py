@@ -15,13 +15,15 @@ does. Whatever is wrong with what is given is an `rotctl.errors.InputError` of o
 """
 
 from collections.abc import Callable, Iterable
-from contextlib import closing
+from contextlib import AbstractContextManager, closing
+from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rotctl import listing
 from rotctl import run as runs
 from rotctl.config import load as composed
+from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.override_files import expanded
 from rotctl.schema import Config
@@ -46,8 +48,8 @@ def load(overrides: Iterable[str] = (), config_dir: str | Path | None = None) ->
     Raises:
         InputError: one line that names the bad value and the valid ones.
     """
-    with listing.own(Path(config_dir) if config_dir else None):
-        return composed(expanded(overrides))
+    with _own(config_dir):
+        return composed(_words(overrides))
 
 
 def simulate(
@@ -65,10 +67,15 @@ def simulate(
         config_dir: as for `load`, where the config follows a clip of yours by its name.
 
     Raises:
-        InputError: the config does not make a run, or the folder cannot be written.
+        InputError: it is no config, it does not make a run, or the folder cannot be written.
     """
-    with listing.own(Path(config_dir) if config_dir else None):
-        return RunLog.open(runs.run(config, Path(out), force, progress).folder / LOG_NAME)
+    if not isinstance(config, Config):
+        raise InputError(
+            f"config: must be one, not of {_kind(config)}; api.load(['seed=3']) makes it"
+        )
+    folder = _path("out", out)
+    with _own(config_dir):
+        return RunLog.open(runs.run(config, folder, force, progress).folder / LOG_NAME)
 
 
 def sweep(
@@ -98,8 +105,10 @@ def sweep(
     from rotctl.sweep.points import points
     from rotctl.sweep.workers import make_engine
 
-    given, folder = expanded(overrides), Path(out)
-    with listing.own(Path(config_dir) if config_dir else None):
+    given, folder = _words(overrides), _path("out", out)
+    if not isinstance(jobs, int | None):
+        raise InputError(f"jobs: must be a number or None, not of {_kind(jobs)}")
+    with _own(config_dir):
         wanted = planned(points(experiments.matrix(given)))
         require_claims(given, wanted)
         with closing(make_engine(jobs, None)) as engine, locked(folder):
@@ -114,9 +123,10 @@ def read(path: str | Path) -> RunLog:
     """Open a log, checked.
 
     Raises:
+        InputError: it is no path.
         LogError: it is missing, damaged, foreign or not whole.
     """
-    return RunLog.open(path)
+    return RunLog.open(_path("path", path))
 
 
 def report(folder: str | Path, out: str | Path = "site") -> Path:
@@ -127,5 +137,37 @@ def report(folder: str | Path, out: str | Path = "site") -> Path:
     """
     from rotctl.report.site.build import report as pages
 
-    pages(Path(folder), Path(out))
-    return Path(out) / "index.html"
+    pages(_path("folder", folder), place := _path("out", out))
+    return place / "index.html"
+
+
+def _words(overrides: Iterable[str]) -> list[str]:
+    """Overrides as a list, with those of files in their files' places.
+
+    Raises:
+        InputError: they are no texts in a list, or a text by itself, which is one of letters.
+    """
+    words = list(overrides) if isinstance(overrides, Iterable) else [overrides]
+    if isinstance(overrides, str) or not all(isinstance(word, str) for word in words):
+        what = "a text" if isinstance(overrides, str) else f"of {_kind(overrides)}"
+        raise InputError(f"overrides: must be a list of texts, such as ['seed=3'], not {what}")
+    return expanded(words)
+
+
+def _own(config_dir: str | Path | None) -> AbstractContextManager[object]:
+    return listing.own(_path("config_dir", config_dir) if config_dir else None)
+
+
+def _path(name: str, path: str | Path) -> Path:
+    """The path that was given as `name`.
+
+    Raises:
+        InputError: it is none.
+    """
+    if not isinstance(path, str | PathLike):
+        raise InputError(f"{name}: must be a path, not of {_kind(path)}")
+    return Path(path)
+
+
+def _kind(value: object) -> str:
+    return f"type {type(value).__name__}"

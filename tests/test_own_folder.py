@@ -182,6 +182,29 @@ def test_a_report_is_the_fifth(here, monkeypatch):
     assert [str(path) for path in called[0]] == ["s", "pages"]
 
 
+@pytest.mark.parametrize(
+    ("call", "complaint"),
+    [
+        (lambda: api.simulate(["seed=1"]), r"^config: must be one, not of type list; api\.load\("),
+        (lambda: api.load("seed=1"), r"^overrides: must be a list of texts, .*, not a text$"),
+        (lambda: api.load([1]), r"^overrides: must be a list of texts, .*, not of type list$"),
+        (lambda: api.load(3), r"^overrides: .*, not of type int$"),
+        (lambda: api.load(config_dir=3), "^config_dir: must be a path, not of type int$"),
+        (lambda: api.sweep("seed=1,2", "out"), "^overrides: must be a list of texts"),
+        (lambda: api.sweep(api.load([]), "out"), "^overrides: .*, not of type Config$"),
+        (lambda: api.sweep(["seed=1,2"], None), "^out: must be a path, not of type NoneType$"),
+        (lambda: api.sweep(["seed=1,2"], "out", jobs="2"), "^jobs: must be a number or None"),
+        (lambda: api.read(api.load([])), "^path: must be a path, not of type Config$"),
+        (lambda: api.report(None), "^folder: must be a path, not of type NoneType$"),
+        (lambda: api.report("s", 3), "^out: must be a path, not of type int$"),
+    ],
+)
+def test_what_is_of_the_wrong_kind_is_told_in_a_line(here, call, complaint):
+    with pytest.raises(InputError, match=complaint):
+        call()
+    assert not list(here.iterdir())
+
+
 def test_runs_are_listed_and_compared(here, cli):
     for seed in (2000, 2001):
         config = load([f"seed={seed}", "duration=0.3", f"controller.pose.weight=0.{seed}"])
