@@ -125,7 +125,7 @@ def from_yaml(where: str, text: str, most: int = MOST_VALUES) -> Any:
         return yaml.load(text, _Loader)  # safe: plain data only
     except yaml.MarkedYAMLError as error:
         line = f":{error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InputError(f"{where}{line}: {_reason(error)}") from None
+        raise InputError(f"{where}{line}: {_reason(error, text)}") from None
     except (yaml.YAMLError, ValueError):
         raise InputError(f"{where}: is no YAML: it has a control character") from None
 
@@ -218,9 +218,13 @@ def _check(text: str, most: int) -> None:
             raise _at(event, f"has more than {most} values")
 
 
-def _reason(error: yaml.MarkedYAMLError) -> str:
+def _reason(error: yaml.MarkedYAMLError, text: str) -> str:
     if isinstance(error, _Refused):
         return str(error.problem)
+    lines, mark = text.split("\n"), error.problem_mark
+    line = lines[mark.line] if mark and mark.line < len(lines) else ""
+    if "\t" in line[: len(line) - len(line.lstrip())]:
+        return "is no YAML: the line begins with a tab, and YAML indents with spaces"
     # C's texts are fixed, while Python's parser quotes.
     texts = filter(None, (error.context, error.problem)) if _C else ()
     return ": ".join(filter(None, ("is no YAML", ", ".join(texts))))
