@@ -39,13 +39,18 @@ def load(overrides: list[str]) -> Config:
         return check(data)
     except InputError as error:
         complaint = chained.told(str(error), data)
-        raise InputError(f"{_own_file(overrides, str(error))}{complaint}") from None
+        raise InputError(f"{own_file(overrides, str(error))}{complaint}") from None
 
 
-def _own_file(overrides: list[str], complaint: str) -> str:
+def own_file(
+    overrides: list[str], complaint: str, made: Callable[[Config], object] = lambda config: None
+) -> str:
     """The file of the user's that is at fault, for a message to begin with; else nothing.
 
     It is at fault if the choices among the overrides are wrong already, by themselves.
+
+    Args:
+        made: what a config is made to, where that complains.
     """
     chosen = choosing.chosen(overrides)
     mine = {one.key: named_file(one.key, one.value) for one in chosen}
@@ -53,7 +58,7 @@ def _own_file(overrides: list[str], complaint: str) -> str:
     if not mine:
         return ""
     try:
-        check(composed([f"{one.key}={one.value}" for one in chosen]))
+        made(check(composed([f"{one.key}={one.value}" for one in chosen])))
     except InputError as error:
         if str(error) == complaint:
             named = [path for group, path in mine.items() if f"{group}." in complaint]

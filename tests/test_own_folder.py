@@ -182,6 +182,15 @@ def test_a_report_is_the_fifth(here, monkeypatch):
     assert [str(path) for path in called[0]] == ["s", "pages"]
 
 
+def test_a_file_is_named_for_what_only_the_making_of_its_run_finds(here, capsys):
+    path = make("behaviour", "my_roll", "reference_roll")
+    path.write_text(path.read_text() + "  offsets: {elbo: [0.1, 0.1]}\n")
+    assert main(["run", "behaviour=my_roll", "duration=0.1"]) == 2
+    found = capsys.readouterr().err
+    assert found.startswith(f"rotctl: {path.resolve()}: behaviour."), found
+    assert "names the unknown joint 'elbo'; did you mean elbow? " in found
+
+
 @pytest.mark.parametrize(
     ("call", "complaint"),
     [

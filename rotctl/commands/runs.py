@@ -66,9 +66,9 @@ def run(arguments: argparse.Namespace) -> int:
     from rotctl.headless import mujoco_without_opengl
 
     mujoco_without_opengl()
-    from rotctl.config import load, rebuilt, recorded
+    from rotctl.config import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
-    from rotctl.run import run
+    from rotctl.run import built, run
 
     row = None
     if arguments.again is None:
@@ -82,7 +82,11 @@ def run(arguments: argparse.Namespace) -> int:
     steps = round(config.duration * config.controller.rate)
     what = f"{config.behaviour.name} seed {config.seed}"
     with bar(what, "step", steps, hidden=arguments.quiet) as shown:
-        result = run(config, arguments.out, arguments.force, shown.update)
+        try:
+            result = run(config, arguments.out, arguments.force, shown.update)
+        except InputError as error:
+            where = own_file(arguments.overrides, str(error), built)
+            raise InputError(f"{where}{error}") from None
     notices = [result.notice]
     if result.already_there:
         notices.append(f"already there, not redone (--force redoes it): {result.folder}")
