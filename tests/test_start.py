@@ -193,7 +193,8 @@ def test_a_posture_that_does_not_fit(world):
     with pytest.raises(InputError) as error:
         draw(WAITING, world.model, "head", generator)
     assert str(error.value) == (
-        "start=test has no posture for behaviour.roll_about=head, only for left; "
+        "start=test is for who faces along the way (roll_about=left), and the behaviour is for who "
+        "lies across the way (behaviour.roll_about=head); "
         "valid: long, prone, rest, side, still, supine, symmetric, tucked, tucked_back"
     )
     tailed = replace(WAITING, postures={"left": Posture(pitch=0.0, pose={"tail": 1.0})})

@@ -24,6 +24,11 @@ from rotctl.simulation.falling import FallingSettings
 from rotctl.simulation.known import Known, StateSettings, pitch
 from rotctl.simulation.suited import suited
 
+WAYS = {
+    "left": "faces along the way",
+    "right": "faces back along the way",
+    "head": "lies across the way",
+}
 SAME = 1e-3  # [-] of a mass, in a file that somebody may round
 SINK = 1e-6  # [m] into the ground, so that whether a start touches does not hang on rounding
 
@@ -144,9 +149,10 @@ def draw(
     if not settings.postures:
         return start
     if roll_about not in settings.postures:
+        there = " or ".join(f"{WAYS[about]} (roll_about={about})" for about in settings.postures)
         raise InputError(
-            f"start={settings.name} has no posture for behaviour.roll_about={roll_about}, only for "
-            f"{', '.join(settings.postures)}; {suited(roll_about)}"
+            f"start={settings.name} is for who {there}, and the behaviour is for who "
+            f"{WAYS[roll_about]} (behaviour.roll_about={roll_about}); {suited(roll_about)}"
         )
     posture = settings.postures[roll_about]
     pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
