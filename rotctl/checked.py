@@ -158,7 +158,8 @@ def _begins_with_key(message: str, found: Any) -> bool:
 def unknown_key(key: str, where: str, valid: Sequence[str]) -> str:
     """One line on a key that settings do not have."""
     under = f" under {where}" if where else ""
-    near = meant(key.rpartition(".")[2], valid)
+    wrong = key.removeprefix(f"{where}.").partition(".")[0]  # what is below it may be right
+    near = meant(wrong, valid)
     return f"unknown key {clip(key)!r}; {near}valid keys{under}: {', '.join(valid)}"
 
 

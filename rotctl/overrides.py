@@ -15,7 +15,7 @@ from rotctl.checked import brief, clip
 from rotctl.choosing import MISSING, Assignment
 from rotctl.errors import InputError
 from rotctl.listing import choices, conf_dir
-from rotctl.meant import instead
+from rotctl.meant import instead_of_many
 
 LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte
 LONGEST_KEY = 200
@@ -84,7 +84,8 @@ def single(override: str) -> Override:
         raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
     valid = choices(key)
     if valid and not isinstance(value, dict) and value not in valid:
-        raise InputError(f"{key}={brief(value)}: no such choice; {instead(value, valid)}")
+        near = instead_of_many(value, valid, f"rotctl list {key}")
+        raise InputError(f"{key}={brief(value)}: no such choice; {near}")
     return found
 
 

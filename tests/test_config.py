@@ -90,6 +90,8 @@ def test_a_key_that_may_be_missing_can_be_removed():
         ("+x=1", f"unknown key 'x'; valid keys: {GROUPS}"),
         ("++x.y=1", f"unknown key 'x'; valid keys: {GROUPS}"),
         ("~x", f"unknown key 'x'; valid keys: {GROUPS}"),
+        ("controler.rate=60", "unknown key 'controler.rate'; did you mean controller? "
+                              f"valid keys: {GROUPS}"),
         ("controllr=rolling", "unknown key 'controllr'; did you mean controller? "
          f"valid keys: {GROUPS}"),
         ("behaviour@x=forward_roll_1", "unknown key 'behaviour@x'; did you mean behaviour? "

@@ -3,13 +3,24 @@
 import pytest
 
 from rotctl.cli import main
-from rotctl.meant import instead, meant
+from rotctl.meant import MANY, NEAR, instead, instead_of_many, meant
 
 
 def test_the_nearest_of_the_valid_names():
     assert meant("wieght", ["damping", "weight", "stiffness"]) == "did you mean weight? "
     assert meant("rnu", ["show", "run"]) == "did you mean run? "
     assert instead("lef", ["left", "right"]) == "did you mean left? valid: left, right"
+
+
+def test_of_many_names_those_most_like_the_word():
+    names = [f"{move}_{n}" for move in ("roll", "jump") for n in range(MANY)]
+    told = instead_of_many("jmup_3", names, "rotctl list x")
+    assert told.startswith("did you mean jump_3? valid: jump_3, jump_")
+    assert told.endswith(f" and {2 * MANY - NEAR} more, see: rotctl list x")
+    assert told.count("jump_") == 1 + NEAR
+    assert "roll_" not in told
+    assert instead_of_many("jmup_3", names[:MANY], "s") == instead("jmup_3", names[:MANY])
+    assert instead_of_many(None, names, "s").endswith(" more, see: s")
 
 
 @pytest.mark.parametrize("word", ["stand", "", "x" * 100_000, True, None, 3])
@@ -23,6 +34,10 @@ def test_what_is_like_none_of_them_has_no_hint(word):
     [
         (["run", "behaviour=forwrd_roll"], "no such choice; did you mean forward_roll? valid: "),
         (["run", "terain=flat"], "unknown key 'terain'; did you mean terrain? valid keys: "),
+        (
+            ["run", "controller.poze.damping=1"],
+            "unknown key 'controller.poze.damping'; did you mean pose? valid keys under controller",
+        ),
         (["run", "controller.pose.wieght=1"], "did you mean weight? valid keys under controller"),
         (["run", "criteria.kind=rollin"], "no such kind; did you mean rolling? valid: "),
         (
