@@ -109,7 +109,8 @@ def test_a_search_repeats_itself_whatever_the_order_of_its_runs(space, tmp_path,
     ]
     assert len(lines) == 3
     assert lines[1].startswith("generation   1  trials    8  best ")
-    other, _ = search(space, tmp_path / "b", trials=4, seed=1)
+    other, said = search(space, tmp_path / "b", trials=3, seed=1)
+    assert said[0] == "4 trials in place of 3: whole generations of 4"
     assert tried(other.trials) != tried(whole.trials[:4])
 
 
@@ -231,7 +232,10 @@ def test_the_history_is_a_table_and_a_picture_and_says_how_to_judge(tmp_path, wh
     assert "mean of the distribution" in result.comparison(found)
     for score, warned in ((2.0, True), (-2.0, False)):
         other = replace(found, start=replace(found.start, score=score))
-        assert ("none is better than the start" in result.comparison(other)) == warned
+        said = result.comparison(other)
+        assert ("none is better than the start" in said) == warned
+        marked = [line for line in said.splitlines() if line.endswith("<- written")]
+        assert [line.split("  ")[1] for line in marked] == [found.candidates[0].name]
 
 
 def test_another_search_or_a_second_one_at_once_is_refused(space, tmp_path):

@@ -94,15 +94,15 @@ def summary(candidate: Candidate) -> str:
 
 def comparison(result: SearchResult) -> str:
     """The start and the candidates on the final seeds, a line each."""
-    taken = result.candidates[0] if is_better(result) else result.start
+    written = result.candidates[0]
     lines = [
-        f"  {row.name:32} {summary(row)}{'  <- taken' if row is taken else ''}"
+        f"  {row.name:32} {summary(row)}{'  <- written' if row is written else ''}"
         for row in (result.start, *result.candidates)
     ]
-    if taken is result.start:
+    if not is_better(result):
         lines.append(
             "none is better than the start: search on, or change the space; what is written is "
-            f"{result.candidates[0].name}, to look at"
+            "to look at"
         )
     return "\n".join(lines)
 

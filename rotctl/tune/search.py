@@ -147,6 +147,8 @@ def _searched(
     wanted = ceil(budget.trials / size) if budget.trials else inf
     # What the final choice takes, in generations.
     final = (BEST + 2) * space.runs.final / (size * space.runs.seeds)
+    if budget.trials and budget.trials % size:
+        line(f"{size * wanted} trials in place of {budget.trials}: whole generations of {size}")
     begin, longest = time.monotonic(), 0.0
     while True:
         done, _ = by_generation(history.trials(), size)
