@@ -41,7 +41,7 @@ def require_own_in_files(chosen: Iterable[tuple[str, Any]], data: dict[str, Any]
     Raises:
         InputError: as for `require_own`, with the file.
     """
-    for group, choice in chosen:
+    for group, choice in dict(chosen).items():  # of two for a group the later one counts
         path = named_file(group, choice)
         part = data.get(group)
         name = part.get(NAME) if is_own(path) and isinstance(part, dict) else choice

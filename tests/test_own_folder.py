@@ -182,6 +182,13 @@ def test_a_report_is_the_fifth(here, monkeypatch):
     assert [str(path) for path in called[0]] == ["s", "pages"]
 
 
+def test_of_two_choices_of_a_group_the_later_one_counts(here):
+    make("start", "mine", "rest")
+    with listing.own(here / "conf"):
+        assert load(["start=mine", "start=raised"]).start.name == "raised"
+        assert load(["start=raised", "start=mine"]).start.name == "mine"
+
+
 def test_a_file_is_named_for_what_only_the_making_of_its_run_finds(here, capsys):
     path = make("behaviour", "my_roll", "reference_roll")
     path.write_text(path.read_text() + "  offsets: {elbo: [0.1, 0.1]}\n")

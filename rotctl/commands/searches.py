@@ -27,7 +27,12 @@ def add_tune(commands: Commands) -> None:
         help="holds the search and its result",
     )
     budget = command.add_mutually_exclusive_group()
-    budget.add_argument("--trials", type=int, metavar="N", help="candidates in all, in whole generations [the space's]")
+    budget.add_argument(
+        "--trials",
+        type=int,
+        metavar="N",
+        help="candidates in all, in whole generations [the space's]",
+    )
     budget.add_argument("--minutes", type=float, metavar="M", help="time for this call instead")
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
     command.add_argument("--scheduler", metavar="ADDRESS", help="of Dask, tcp://HOST:PORT, instead")
