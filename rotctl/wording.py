@@ -9,6 +9,7 @@ if TYPE_CHECKING:
 
 
 STILL = 0.05  # [rev, rev/s] less is no rolling
+SHORT = 5  # times what is left out: of a shorter run that is more than a fifth
 AWAY = 0.6  # [-] of a command: who is so far off it does not follow it; Table 1's rows are within
 
 
@@ -22,8 +23,12 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
 
 
-def readable(summary: dict[str, Any]) -> str:
-    """A summary row for people."""
+def readable(summary: dict[str, Any], settle: float = 0.0) -> str:
+    """A summary row for people.
+
+    Args:
+        settle: at the start that mean speeds of a roll leave out [s]; of a short run it is said.
+    """
 
     def number(key: str, form: str = ".2f") -> str:
         value = summary.get(key)
@@ -41,7 +46,7 @@ def readable(summary: dict[str, Any]) -> str:
     if summary.get("criteria", "rolling") in ("rolling", "finish"):
         measured = [
             f"  rolled       {number('revolutions', '.1f')} rev in {number('duration', '.1f')} s, "
-            f"{_pace(summary)} ({_asked(summary, 'angular_velocity')})",
+            f"{_pace(summary)}{_after(summary, settle)} ({_asked(summary, 'angular_velocity')})",
             f"  speed        {number('speed_mean')} m/s ({_asked(summary, 'speed')})",
             f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
             f"drift {number('lateral_drift')} m",
@@ -108,6 +113,15 @@ def _pace(summary: dict[str, Any]) -> str:
         return "- rev/s"
     ended = isinstance(turned, int | float) and abs(turned) >= STILL and abs(rate) < STILL
     return "and then no more" if ended else f"{rate:.2f} rev/s"
+
+
+def _after(summary: dict[str, Any], settle: float) -> str:
+    """What of a short run mean speeds are of."""
+    lasted = summary.get("duration")
+    if not isinstance(lasted, int | float) or not 0.0 < lasted < SHORT * settle:
+        return ""
+    means = isinstance(summary.get("angular_velocity_mean"), int | float)
+    return f" after the first {settle:g} s" if means else f": means begin after {settle:g} s"
 
 
 def _asked(summary: dict[str, Any], velocity: str) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rotctl.config import load
+from rotctl.metrics.judge import settling
 from rotctl.metrics.pace import measure, off
 from rotctl.wording import readable
 
@@ -122,3 +123,23 @@ def test_what_is_said_of_its_pace(changes, said):
     row = {"success": True, "solver_failures": 0, "revolutions": 8.0, "duration": 10.0}
     row |= {"angular_velocity_commanded": 1.3} | changes
     assert readable(row).splitlines()[1].partition("rolled")[2].strip() == said
+
+
+@pytest.mark.parametrize(
+    ("lasts", "mean", "said"),
+    [
+        (3.0, 0.79, "0.79 rev/s after the first 2 s (commanded 1.30)"),
+        (1.5, None, "- rev/s: means begin after 2 s (commanded 1.30)"),
+        (20.0, 0.79, "0.79 rev/s (commanded 1.30)"),
+    ],
+)
+def test_of_a_short_run_it_is_said_what_its_means_leave_out(lasts, mean, said):
+    row = {"success": True, "solver_failures": 0, "revolutions": 2.6, "duration": lasts}
+    row |= {"angular_velocity_commanded": 1.3, "angular_velocity_mean": mean}
+    assert said in readable(row, settle=2.0).splitlines()[1]
+
+
+def test_what_means_leave_out_is_of_the_criteria():
+    for name, settle in (("rolling", 3.0), ("finish", 2.0), ("standing", 0.0)):
+        changed = ["criteria.settle=3"] if name == "rolling" else []
+        assert settling(load([f"criteria={name}", *changed]).criteria) == settle

@@ -68,6 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     mujoco_without_opengl()
     from rotctl.config import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
+    from rotctl.metrics.judge import settling
     from rotctl.run import built, run
 
     row = None
@@ -103,7 +104,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         print(json.dumps(result.summary))
     elif not arguments.quiet:
-        print(readable(result.summary))
+        print(readable(result.summary, settling(config.criteria)))
         print(f"log        {result.folder / LOG_NAME}")
         if picture:
             print(f"filmstrip  {picture}")

@@ -175,6 +175,12 @@ def judge(
     return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
 
 
+def settling(criteria: Criteria) -> float:
+    """What mean speeds of a roll leave out at its start [s]; 0 of what has none."""
+    roll = criteria.roll if isinstance(criteria, FinishCriteria) else criteria
+    return roll.settle if isinstance(roll, RollingCriteria) else 0.0
+
+
 def _chained(
     log: Arrays,
     criteria: ChainCriteria,
