@@ -110,6 +110,25 @@ def test_what_runs_is_in_the_log(recorded, here):
     assert main(["verify", str(log)]) == 0
 
 
+@pytest.mark.parametrize(
+    ("overrides", "stage"),
+    [
+        (["behaviour=handstand"], "stand"),
+        (["behaviour=chain", "behaviour.parts=[stand,back_flip]"], "stand"),
+        (["behaviour=get_up"], ""),  # takes the way that suits
+        (["behaviour=forward_roll_2"], ""),  # begins at the phase
+        (["behaviour=handstand", "start=raised"], ""),  # no state of a run
+    ],
+)
+def test_what_has_stages_says_that_it_begins_with_the_first(
+    recorded, here, capsys, overrides, stage
+):
+    make("there", recorded, None)
+    assert main(["run", "start=there", "duration=0.05", *overrides]) == 0
+    said = f"begins with its first stage, {stage}, however the body is then\n" if stage else ""
+    assert capsys.readouterr().err.rpartition("\r")[2] == said
+
+
 def test_the_lowest_point_is_at_the_gap():
     """By MuJoCo's own distances, whatever the body."""
     scenario, data = beside()

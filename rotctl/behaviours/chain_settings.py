@@ -142,3 +142,10 @@ class ChainSettings:
     def make(self, model: Model, control: ControllerSettings, measured: ExcursionSettings) -> Chain:
         """The behaviour of one run."""
         return Chain(self, model, control, measured)
+
+
+def first_stage(settings: ChainSettings | RollingSettings | StagedSettings) -> str:
+    """The stage that a behaviour begins with in any start; empty where the start decides."""
+    if isinstance(settings, ChainSettings):
+        return "" if settings.ways else first_stage(settings.parts[0].behaviour)
+    return settings.stages[0].name if isinstance(settings, StagedSettings) else ""

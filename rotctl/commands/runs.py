@@ -66,6 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rotctl.headless import mujoco_without_opengl
 
     mujoco_without_opengl()
+    from rotctl.behaviours.chain_settings import first_stage
     from rotctl.config import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
     from rotctl.metrics.judge import settling
@@ -88,7 +89,9 @@ def run(arguments: argparse.Namespace) -> int:
         except InputError as error:
             where = own_file(arguments.overrides, str(error), built)
             raise InputError(f"{where}{error}") from None
-    notices = [result.notice]
+    stage = first_stage(config.behaviour) if config.start.state else ""
+    begins = f"begins with its first stage, {stage}, however the body is then" if stage else ""
+    notices = [result.notice, begins]
     if result.already_there:
         notices.append(f"already there, not redone (--force redoes it): {result.folder}")
     if result.replaced:
