@@ -5,6 +5,7 @@ import re
 import pytest
 
 from rotctl.config import load
+from rotctl.metrics.early import of_a_part
 from rotctl.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
@@ -25,7 +26,7 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
         ),
         (
             ["behaviour=stand", "duration=0.5"],
-            "0.50 s, 0.50 s after it began: it is to rest for 1 s",
+            "0.50 s, 0.50 s after it began: it is to rest for 1 s, 0.50 s more at least",
         ),
         (
             [*STANDS, "duration=1.2"],
@@ -50,7 +51,7 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
         ),
         (
             ["behaviour=pirouette_one_foot", "duration=4", "seed=2014"],
-            r"4.00 s, \d.\d\d s after it was there: it is to rest for 2 s",
+            r"4.00 s, \d.\d\d s after it was there: it is to rest for 2 s, \d.\d\d s more at least",
         ),
         (
             ["behaviour=get_up", "duration=2"],
@@ -58,7 +59,7 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
         ),
         (
             ["behaviour=stand_step", *PUSHED, "disturbance.time=0.5", "duration=1"],
-            "1.00 s, 0.38 s after it was pushed: it is to rest for 2 s",
+            "1.00 s, 0.38 s after it was pushed: it is to rest for 2 s, 1.62 s more at least",
         ),
     ],
 )
@@ -69,7 +70,11 @@ def test_the_end_of_a_short_run_is_its_reason(overrides, reason):
 
 @pytest.mark.parametrize(
     ("duration", "begins"),
-    [(2.3, "in the air"), (3.0, r"0.\d\d s after it landed: it is to rest for 2 s"), (6.0, "")],
+    [
+        (2.3, "in the air"),
+        (3.0, r"0.\d\d s after it landed: it is to rest for 2 s, 1.\d\d s more at least"),
+        (6.0, ""),
+    ],
 )
 def test_a_flip_goes_through_all_of_them(duration, begins):
     config = load(["behaviour=front_flip", "seed=2000", f"duration={duration}"])
@@ -89,3 +94,19 @@ def test_a_run_that_had_the_time_fails_for_its_own_reason(overrides, reason):
     found = make(load([*overrides, "seed=2000", "duration=4"])).summary["failure_reason"]
     assert found.startswith(reason)
     assert "the run ends" not in found
+
+
+def test_a_part_that_the_runs_end_cuts_says_so_in_the_runs_time():
+    parts = ("behaviour=chain", "behaviour.parts=[stand,back_flip]", "seed=3")
+    rests = "1.00 s after it began: it is to rest for 2 s, 1.00 s more at least, and then back_flip"
+    for duration, said in (
+        (3.0, f"part 2 of 3, square: the run ends at 3.00 s, {rests}"),
+        (4.2, "part 3 of 3, back_flip: the run ends at 4.20 s, before it takes off"),
+    ):
+        found = make(load([*parts, f"duration={duration}"])).summary["failure_reason"]
+        assert found == said
+    assert (
+        of_a_part("the run ends at 4.00 s, in the air", 6.5, True)
+        == "it ends at 6.50 s, in the air"
+    )
+    assert of_a_part("leans by 30 deg at the end", 6.5, True) == "leans by 30 deg at the end"

@@ -85,7 +85,15 @@ def test_who_came_upright_too_late_had_no_time_to_rest():
         columns, reason = judge(log, FINISH, ASKED, PERIOD, 0.99)
         assert reason == "leans by 30 deg at the end"
         told = too_short(log, FINISH, ASKED, columns, PERIOD)
-        assert told == said + "it is to rest for 2 s" * bool(said)
+        assert told == said + "it is to rest for 2 s, 1.00 s more at least" * bool(said)
+
+
+def test_a_roll_that_stalls_and_stands_up_late_has_stalled():
+    stalls = 0.5 * PERIOD * np.minimum(np.arange(STEPS), 240)
+    log = log_of(turns=stalls, stands=900)
+    columns, reason = judge(log, FINISH, ASKED, PERIOD, 0.99)
+    assert reason.startswith("stalled for ")
+    assert too_short(log, FINISH, ASKED, columns, PERIOD) == ""
 
 
 def test_a_roll_that_is_counted():

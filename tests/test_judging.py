@@ -226,7 +226,7 @@ def test_a_chain_is_judged_by_what_its_parts_have_by_themselves(tmp_path):
     grid = ("behaviour=chain", "behaviour.parts=[stand,back_flip]", "duration=0.5")
     folder = swept(tmp_path / "sweep", *grid)
     (row,) = judge(folder, criteria(["criteria=chain"]), Here()).table.rows.to_dict("records")
-    assert row["failure_reason"].startswith("part 1 of 3, stand: it ends at 0.50 s, ")
+    assert row["failure_reason"].startswith("part 1 of 3, stand: the run ends at 0.50 s, ")
     less = criteria(["criteria=chain", "criteria.parts.0.rest=0.1"])
     (row,) = judge(folder, less, Here()).table.rows.to_dict("records")
     assert row["failure_reason"] == "part 2 of 3, square, has not begun"

@@ -22,6 +22,7 @@ from rotctl.metrics.touching import touch_downs
 if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
 
+ENDS = "the run ends at"
 NOW, SLOW = 0.5, 0.1  # [s] before the end, [m/s] who is slower has come to rest
 TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
@@ -43,7 +44,19 @@ def too_short(
     """
     lasted = len(floats(log, "trajectory/time")) * period
     missing = _missing(log, criteria, commanded, columns, lasted, period)
-    return f"the run ends at {lasted:.2f} s, {missing}" if missing else ""
+    return f"{ENDS} {lasted:.2f} s, {missing}" if missing else ""
+
+
+def of_a_part(reason: str, end: float, goes_on: bool) -> str:
+    """The reason of a chain's part in the run's time, which may go on after it.
+
+    Args:
+        end: of the part in the run [s].
+    """
+    if not reason.startswith(ENDS):
+        return reason
+    missing = reason.partition(" s, ")[2]
+    return f"{'it ends at' if goes_on else ENDS} {end:.2f} s, {missing}"
 
 
 def _missing(
@@ -61,6 +74,8 @@ def _missing(
     if isinstance(criteria, OrientationCriteria):
         return _before_the_turn(log, criteria, columns, lasted)
     if isinstance(criteria, FinishCriteria):
+        if _rolled_wrongly(criteria.roll, columns):
+            return ""
         soonest, begins = commanded["finish_commanded"], finish.begins(log) * period
         if lasted <= soonest:
             return f"before it is told to end, at {soonest:g} s"
@@ -94,6 +109,16 @@ def _missing(
     return _before_the_end_of_a_flight(log, period) or resting
 
 
+def _rolled_wrongly(roll: RollingCriteria, columns: Mapping[str, float]) -> bool:
+    """Whether it stalled, took too long over a revolution or rocked back: no time mends that."""
+    limits = {
+        "longest_stall": roll.stall_time,
+        "slowest_revolution": roll.revolution_time,
+        "setback": roll.setback,
+    }
+    return any(columns[name] >= limit for name, limit in limits.items())
+
+
 def _before_it_is_told(
     criteria: FinishCriteria,
     commanded: Mapping[str, float],
@@ -102,8 +127,7 @@ def _before_it_is_told(
 ) -> str:
     """Of a roll that is counted: it rolls, and had no time for so many."""
     turns, turned = commanded["revolutions_told"], columns["revolutions"]
-    rolls = columns["longest_stall"] < criteria.roll.stall_time
-    if not rolls or lasted >= turns * criteria.roll.revolution_time:
+    if lasted >= turns * criteria.roll.revolution_time:
         return ""
     return f"before it is told to end, after {turns:.3g} rev: it turned {turned:.2f} rev"
 
@@ -185,4 +209,7 @@ def _in_the_air(log: Arrays) -> str:
 
 def _resting(what: str, since: float, lasted: float, rest: float) -> str:
     rested = lasted - since
-    return f"{rested:.2f} s after {what}: it is to rest for {rest:g} s" if rested < rest else ""
+    if rested >= rest:
+        return ""
+    more = math.ceil(100.0 * (rest - rested) - 1e-6) / 100.0
+    return f"{rested:.2f} s after {what}: it is to rest for {rest:g} s, {more:.2f} s more at least"

@@ -190,12 +190,12 @@ def _chained(
 ) -> tuple[dict[str, Any], str]:
     """Columns of a chain, and why it is no success; empty if each of its parts is one."""
     parts = chain.spans(log, [link.stages for link in links])
-    reasons = []
+    rows, reasons = len(floats(log, "trajectory/time")), []
     for part, own, link in zip(parts, criteria.parts, links, strict=False):
         first, end = part.rows.start, part.rows.stop
         wanted = (end - first) * period
         made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
-        reasons.append(made.reason.replace("the run ends", "it ends", 1))  # and the run goes on
+        reasons.append(early.of_a_part(made.reason, end * period, end < rows))
     found = {
         "parts_succeeded": sum(not reason for reason in reasons),
         "parts_begun": len(parts),
@@ -203,7 +203,10 @@ def _chained(
     }
     for number, (link, reason) in enumerate(zip(links, reasons, strict=False), 1):
         if reason:
-            return found, f"part {number} of {len(links)}, {link.name}: {reason}"
+            last = number == len(parts) < len(links) and reason.startswith(early.ENDS)
+            left = ", ".join(link.name for link in links[number:]) if last else ""
+            more = f", and then {left}" if left else ""
+            return found, f"part {number} of {len(links)}, {link.name}: {reason}{more}"
     if len(parts) < len(links):
         number = len(parts) + 1
         return found, f"part {number} of {len(links)}, {links[len(parts)].name}, has not begun"
