@@ -15,7 +15,7 @@ from rotctl import choosing, labels, plain
 from rotctl.checked import brief, clip
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
-from rotctl.listing import usual
+from rotctl.listing import choices, usual
 from rotctl.settings import MOST_PARTS
 
 KIND, SAID = "chain", "said"
@@ -139,8 +139,23 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
         if not isinstance(made.get(group), dict):
             raise InputError(f"{where}={brief(said)}: leaves no {group}, it must have one")
     if made["behaviour"].get("kind") == KIND:
-        raise InputError(f"{where}={brief(said)}: is a chain; name its parts")
+        raise InputError(f"{where}={brief(said)}: {_instead(made, compose)}")
     return {**made, SAID: shlex.join([words[0].partition("=")[2], *words[1:]])}
+
+
+def _instead(made: dict[str, Any], compose: Composing) -> str:
+    """What to write in place of a chain as a part."""
+    parts = made["behaviour"].get("parts")
+    names = [part for part in parts if isinstance(part, str)] if isinstance(parts, list) else []
+    judged = made["criteria"].get("kind")
+    if judged == KIND:
+        return "is a chain; name its parts" + f", {', '.join(names)}" * bool(names)
+    alike = []
+    for name in filter(choices("behaviour").__contains__, names):
+        one = compose([f"behaviour={name}"]).get("criteria")
+        alike += [name] if isinstance(one, dict) and one.get("kind") == judged else []
+    less = f"; {' or '.join(alike)} of them can be one" if alike else ""
+    return f"is a chain that is judged as a whole, and no part of another{less}: see docs/chains.md"
 
 
 def _require_here(where: str, made: dict[str, Any], data: dict[str, Any]) -> None:

@@ -130,6 +130,12 @@ def test_what_was_said_of_a_part_does_not_act():
         (["back_flap"], 'behaviour.parts.0: behaviour="back_flap": no such choice; did you mean '
          "back_flip?"),
         (["chain"], 'behaviour.parts.0="chain": is a chain; name its parts'),
+        (["forward_roll_twice"], 'behaviour.parts.0="forward_roll_twice": is a chain; name its '
+         "parts, stand, tip_over, forward_roll "),
+        (["get_up", "back_flip"], 'behaviour.parts.0="get_up": is a chain that is judged as a '
+         "whole, and no part of another; press_up of them can be one: see docs/chains.md"),
+        (["stand", "rock_up"], 'behaviour.parts.1="rock_up": is a chain that is judged as a whole, '
+         "and no part of another: see docs/chains.md"),
         (["stand", ""], 'behaviour.parts.1="": must begin with a behaviour, back_flip or '
          "behaviour=back_flip"),
         (["stand seed=3"], 'behaviour.parts.0: "seed=3": a part may say behaviour, catch, course, '
