@@ -205,7 +205,10 @@ CASES = {
             "disturbance.direction=60",
         ),
         r"behaviour\.tasks\.(balance|swing)\..*",
-        {r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together"},
+        {
+            r"behaviour\.tasks\.balance\.aim\.lunge(_margin|_most)?": "of lunges, all together",
+            r"behaviour\.tasks\.swing\.aim\.twist": "of turns about the upright",
+        },
         seconds=0.8,
     ),
     "turning onto the front": Case(

@@ -13,6 +13,7 @@ from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import UNITS
 from rotctl.behaviours.similar import similar as asking
 from rotctl.behaviours.until import Until
+from rotctl.behaviours.ways import Posture
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.config import load
 from rotctl.control.similar import similar
@@ -115,7 +116,8 @@ WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are fo
     "Bow.angle", "Face.share", "Turn.most", "Capture.gain", "Capture.lunge", "Stepping.spin",
     "Stepping.away", "Stepping.twist",
     "Lean.gain", "Launch.gain", "Whirl.amount", "Poise.gain", "Carry.gain", "Carry.angles",
-    "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Tilted.angle",
+    "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Near.level", "Tilted.angle",
+    "Leant.angle", "FaceDown.angle", "OnFeet.lean", "Rolls.tilt",
     "Launched.knee", "Leaves.angle", "CatchSettings.free", "CatchSettings.gain",
     "CatchSettings.out", "FinishSettings.after", "FinishSettings.ahead",
     "FinishSettings.revolutions", "FinishSettings.within", "PaceSettings.approach",
@@ -141,7 +143,7 @@ def parts_of_a_roll():
 
 
 def test_every_number_of_an_aim_or_a_condition_has_a_unit_or_is_known_to_have_none():
-    shapes = [shape for union in (Aim, Until) for shape in get_args(get_args(union)[0])]
+    shapes = [shape for union in (Aim, Until, Posture) for shape in get_args(get_args(union)[0])]
     assert len(shapes) > 30
     shapes += parts_of_a_roll()
     said = {f"{shape.__name__}.{name}" for shape in shapes for name in UNITS.get(shape, {})}

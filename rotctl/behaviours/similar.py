@@ -15,6 +15,7 @@ from rotctl.behaviours.chain_settings import ChainSettings, PartSettings
 from rotctl.behaviours.chaining import RestSettings
 from rotctl.behaviours.finishing import FinishSettings
 from rotctl.behaviours.flight_settings import FlightSettings
+from rotctl.behaviours.gathering import Beside
 from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.launch import Launch, Lean, Whirl
 from rotctl.behaviours.levelling import LevellingSettings
@@ -26,8 +27,8 @@ from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.touching import Airborne, Launched, Touches
-from rotctl.behaviours.until import After, Leaves, Low, Near, Over, Passed, Still
-from rotctl.behaviours.ways import OnFeet, Way
+from rotctl.behaviours.until import After, Leant, Leaves, Low, Near, Over, Passed, Still
+from rotctl.behaviours.ways import OnFeet, Rolls, Way
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.similar import similar_gains
 from rotctl.mechanics.stature import Likeness
@@ -100,12 +101,14 @@ UNITS: Units = {
     | all_of(rate, "eager"),
     Place: all_of(length, "distance", "height", "ahead", "room", "short"),
     Stride: all_of(length, "distance", "lift", "height") | all_of(time, "time"),
+    Beside: all_of(length, "width", "lift", "height") | all_of(time, "time"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),
     ReachSettings: all_of(time, "seconds"),
     Above: all_of(length, "ahead", "height", "most"),
     Opposite: all_of(length, "ahead", "height"),
     Low: all_of(length, "height"),
+    Leant: all_of(time, "after"),
     Escapes: all_of(length, "point", "distance"),
     Near: all_of(speed, "speed") | all_of(rate, "turning"),
     FlightSettings: all_of(time, "opening", "change", "coasting"),
@@ -118,6 +121,7 @@ UNITS: Units = {
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
     ChainSettings: all_of(length, "again"),
     OnFeet: all_of(length, "out") | all_of(speed, "speed"),
+    Rolls: all_of(rate, "turning"),
     Way: all_of(time, "patience"),
     RestSettings: all_of(time, "seconds") | all_of(speed, "speed"),
 }
