@@ -11,7 +11,8 @@ from PIL import Image
 
 from rotctl.config import load
 from rotctl.errors import InputError, LogError
-from rotctl.log import RunLog
+from rotctl.log import SCHEMA, RunLog
+from rotctl.log.schema import MODEL_PATH
 from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
@@ -220,10 +221,38 @@ def test_a_run_without_a_drawable_step_is_refused(log, picture, tmp_path):
 
 def test_by_default_two_turns_after_settling_are_shown_where_they_are_reached():
     time = np.arange(0, 6, 0.1)
-    assert module._two_turns(time, time) == (20, 40)
-    assert module._two_turns(time, -time) == (20, 40)
-    assert module._two_turns(time, 0.4 * time) is None
-    assert module._two_turns(time[:10], time[:10]) is None
+    assert module._two_turns(time, time, 2.0) == (20, 40)
+    assert module._two_turns(time, -time, 2.0) == (20, 40)
+    assert module._two_turns(time, time, 3.5) == (35, 55)
+    assert module._two_turns(time, 0.4 * time, 2.0) is None
+    assert module._two_turns(time[:10], time[:10], 2.0) is None
+
+
+def test_a_roll_that_is_pushed_is_shown_from_there(log, tmp_path):
+    rows, rate = 600, 60
+    turned, wrench = np.zeros((rows, 3)), np.zeros((rows, 6))
+    turned[:, 1] = 2 * np.pi * 0.9 * np.arange(rows) / rate
+    wrench[300:306, 1] = 400.0
+    first = {
+        name: np.repeat(log[name][:1], rows, axis=0)
+        for name in SCHEMA
+        if name != MODEL_PATH and len(log[name]) == log.steps
+    }
+    own = {
+        "trajectory/time": np.arange(rows) / rate,
+        "trajectory/angular_excursion": turned,
+        "disturbance/wrench": wrench,
+    }
+    shown = module._rows(changed(log, tmp_path, first | own), 12, None, None)
+    assert 268 <= shown[0] <= 272
+    assert 300 <= min(row for row in shown if row >= 300) < 306
+    wrench[:] = 0.0
+    wrench[-1, 0] = 1.0
+    own["trajectory/qpos"] = first["trajectory/qpos"].copy()
+    own["trajectory/qpos"][590:] = np.nan  # it broke down before it was pushed
+    shown = module._rows(changed(log, tmp_path, first | own), 12, None, None)
+    assert shown[0] == 120
+    assert np.ptp(np.diff(shown)) <= 1
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from rotctl.report import gl, stored_model
 from rotctl.report.frame import FORCE_SCALE, PAPER, Moment, draw, moments, turns_done
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet
-from rotctl.report.skill import Part, parts
+from rotctl.report.skill import BEFORE, Part, first_push, parts
 from rotctl.report.spacing import even, spread
 from rotctl.report.stage_names import stages_of_parts
 from rotctl.rotations import Array
@@ -44,9 +44,9 @@ def filmstrip(
         frames: how many; fewer if there are not as many steps.
         start: time of the first frame [s].
         end: time of the last frame [s]; from start to end they are evenly spaced in time. Without
-            both: of a roll two revolutions from 2 s on, evenly; the whole run where those are not
-            reached, and of anything else what `rotctl.report.skill` finds, as
-            `rotctl.report.spacing` says.
+            both: of a roll two revolutions from 2 s on, evenly, or from its first push; the whole
+            run where those are not reached, and of anything else what `rotctl.report.skill` finds,
+            as `rotctl.report.spacing` says.
         columns: frames in a row; at most 6 by default.
 
     Raises:
@@ -106,15 +106,21 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     if start is not None or end is not None:
         return even(*window(time, start, end), frames)
     found = parts(log, time, stages_of_parts(log))
-    turning = None if found else _two_turns(time, turns_done(log)[: len(time)])
-    if turning:
+    if found:
+        return spread(log, found, frames)
+    pushed = first_push(log)
+    if pushed is not None and pushed >= len(time):
+        pushed = None  # it broke down before
+    since = SETTLED if pushed is None else max(SETTLED, float(time[pushed]) - BEFORE)
+    turning = _two_turns(time, turns_done(log)[: len(time)], since)
+    if turning and pushed is None:
         return even(*turning, frames)
-    return spread(log, found or [Part(0, len(time) - 1, 1.0)], frames)
+    return spread(log, [Part(*(turning or (0, len(time) - 1)), 1.0)], frames)
 
 
-def _two_turns(time: Array, turns: Array) -> tuple[int, int] | None:
-    """Rows from SETTLED on until DEFAULT_TURNS are done; None where they never are."""
-    first = int(np.searchsorted(time, SETTLED))
+def _two_turns(time: Array, turns: Array, since: float) -> tuple[int, int] | None:
+    """Rows from a time [s] on until DEFAULT_TURNS are done; None where they never are."""
+    first = int(np.searchsorted(time, since))
     done = np.flatnonzero(np.abs(turns[first:] - turns[first : first + 1]) >= DEFAULT_TURNS)
     return (first, first + int(done[0])) if len(done) else None
 

@@ -115,12 +115,19 @@ def _begin(log: Arrays, staged: Array, period: float) -> int | None:
     elif not np.asarray(log["contacts/count"])[0]:
         begin = 0
     else:
-        known = "disturbance/wrench" in log
-        pushed = floats(log, "disturbance/wrench").any(axis=1) if known else np.zeros(1, dtype=bool)
-        if not pushed.any():
+        pushed = first_push(log)
+        if pushed is None:
             return None
-        begin = int(np.argmax(pushed))
+        begin = pushed
     return max(begin - round(BEFORE / period), 0)
+
+
+def first_push(log: Arrays) -> int | None:
+    """The row in which something from outside first pushes; None if nothing does."""
+    if "disturbance/wrench" not in log:
+        return None
+    pushed = floats(log, "disturbance/wrench").any(axis=1)
+    return int(np.argmax(pushed)) if pushed.any() else None
 
 
 def _still(log: Arrays, after: int, period: float, rows: int, poses: bool = False) -> int:
