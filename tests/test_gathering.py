@@ -48,6 +48,17 @@ def test_arms_come_overhead_and_knees_stay_off_their_stops(seed):
     assert np.abs(log["trajectory/com_velocity"][-1]).max() < 0.05
 
 
+@pytest.mark.parametrize("seed", [2001, 2003])
+def test_knees_are_off_their_stops_until_a_cartwheel_steps(seed):
+    """It stands for 0.8 s first, and comes up to its full height meanwhile."""
+    parts = "behaviour.parts=[raise,cartwheel]"
+    chain = ["behaviour=chain", parts, "behaviour.between=null", f"seed={seed}", "duration=3.5"]
+    log, model = simulated(*chain)
+    angles = dict(zip(model.joint_names, log["trajectory/qpos"][-1][model.angles], strict=True))
+    assert log["command/stage"][-1] == 3  # the cartwheel's first
+    assert min(angles["knee_l"], angles["knee_r"]) > 0.08
+
+
 @pytest.mark.parametrize(
     ("body", "other", "side"), [("foot_r", "foot_l", -1), ("foot_l", "foot_r", 1)]
 )
