@@ -157,6 +157,8 @@ def _remove_left(part: Path) -> None:
     """Remove what a kill left behind, or wait for the process that is writing it."""
     try:
         left = os.open(part, os.O_WRONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except FileNotFoundError:  # it took its place meanwhile; what lies there next is another's
+        return
     except OSError:  # a link or a pipe, which nobody of ours made
         part.unlink(missing_ok=True)
         return

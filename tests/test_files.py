@@ -150,6 +150,18 @@ def test_two_that_write_the_same_file_at_once_each_put_a_whole_one(folder):
     assert os.listdir(folder) == ["a"]
 
 
+def test_the_part_of_a_third_one_stays_where_that_of_the_second_took_its_place(folder, monkeypatch):
+    part = folder / "a.part"
+
+    def gone_and_another_begun(path, flags):
+        part.write_bytes(b"another's")
+        raise FileNotFoundError(path)
+
+    monkeypatch.setattr(files.os, "open", gone_and_another_begun)
+    files._remove_left(part)
+    assert part.read_bytes() == b"another's"
+
+
 def test_a_folder_that_stays_empty_goes_again(folder):
     with files.folder(folder / "a" / "b", linked=False):
         pass
