@@ -6,6 +6,7 @@ and its joints moved, none closer to the next than `CLOSEST`; then each stage, p
 down that has none gets the nearest that can be spared.
 """
 
+from bisect import bisect_left
 from collections.abc import Sequence
 
 import numpy as np
@@ -92,10 +93,11 @@ def _stretches(part: Part, marks: list[Array], most: int) -> list[Stretch]:
 
 
 def _seen(rows: list[int], wanted: list[Stretch], closest: int) -> list[int]:
-    """Rows of which one is in each stretch, as far as one can be spared and none is too close."""
+    """Rows, in order: one in each stretch, as far as one can be spared and none is too close."""
 
     def none_in(stretch: Stretch, some: list[int]) -> bool:
-        return not any(stretch[0] <= row <= stretch[1] for row in some)
+        after = bisect_left(some, stretch[0])
+        return after == len(some) or some[after] > stretch[1]
 
     def lost(some: list[int]) -> int:
         return sum(none_in(stretch, some) for stretch in wanted)
