@@ -9,6 +9,7 @@ import errno
 import fcntl
 import os
 import stat
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import FileIO
@@ -17,6 +18,8 @@ from typing import BinaryIO
 
 from rotctl.errors import InputError
 
+PATIENCE = 60.0  # [s] with another process that writes the same file
+TURN = 0.005  # [s] from one look at it to the next
 _REASONS = {
     errno.ENOENT: "no such file",
     errno.ENOTDIR: "no such file",
@@ -168,9 +171,23 @@ def _remove_left(part: Path) -> None:
 
 
 def _held(file: FileIO, part: Path) -> bool:
-    """Lock a file; whether it is still the one at `part`."""
-    with suppress(OSError):  # a disk that knows no locks
-        fcntl.flock(file, fcntl.LOCK_EX)
+    """Lock a file; whether it is still the one at `part`.
+
+    Raises:
+        TimeoutError: the process that is writing it does not come to an end.
+    """
+    for _ in range(round(PATIENCE / TURN)):
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            break
+        except BlockingIOError:
+            time.sleep(TURN)
+        except OSError:  # a disk that knows no locks
+            break
+    else:
+        raise TimeoutError(
+            errno.ETIMEDOUT, f"another process has been writing it for {PATIENCE:g} s"
+        )
     try:
         return os.path.samestat(os.fstat(file.fileno()), os.stat(part, follow_symlinks=False))
     except FileNotFoundError:

@@ -15,6 +15,7 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.dive import WATCHED, DiveCriteria
 from rotctl.metrics.judge import ChainCriteria, Criteria
+from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.schema import Config
 from rotctl.settings import Vector, ends
 
@@ -29,7 +30,8 @@ def require_fit(config: Config, model: Model) -> None:
     """
     behaviour = config.behaviour
     _require_judged(behaviour, config.criteria, model)
-    _require_weight(behaviour, config.physics.gravity)
+    if not isinstance(config.criteria, OrientationCriteria):
+        _require_weight(behaviour, config.physics.gravity)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
         raise InputError(
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
@@ -52,7 +54,7 @@ def require_fit(config: Config, model: Model) -> None:
 
 
 def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
-    """Who stands, steps or comes down goes by the time of a fall, and only a roll turns without."""
+    """Who stands, steps or comes down goes by the time of a fall; a roll turns without."""
     rolls_on = isinstance(behaviour, RollingSettings) and behaviour.finish is None
     if gravity[2] >= 0.0 and not rolls_on:
         raise InputError(

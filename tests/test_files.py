@@ -279,3 +279,13 @@ def journal(folder, victim):
     record = struct.pack(">I", 2**30 // 4096 + 1) + name
     record += struct.pack(">II", len(name), sum(name)) + bytes.fromhex("d9d505f920a163d7")
     (folder / "study.db-journal").write_bytes(cut_off + record)
+
+
+def test_who_waits_for_another_writer_does_not_wait_for_ever(folder, monkeypatch):
+    monkeypatch.setattr(files, "PATIENCE", 0.02)
+    with files.replacing(folder / "a") as part:
+        part.write_text("first")
+        said = f"^cannot write {folder / 'a'}: another process has been writing it for 0.02 s$"
+        with pytest.raises(InputError, match=said):
+            files.replace(folder / "a", b"second")
+    assert (folder / "a").read_text() == "first"

@@ -125,7 +125,9 @@ def test_what_has_stages_says_that_it_begins_with_the_first(
 ):
     make("there", recorded, None)
     assert main(["run", "start=there", "duration=0.05", *overrides]) == 0
-    said = f"begins with its first stage, {stage}, however the body is then\n" if stage else ""
+    name = overrides[0].removeprefix("behaviour=")
+    first = f"{name} begins with its first stage, {stage}, however the body is then\n"
+    said = first if stage else ""
     assert capsys.readouterr().err.rpartition("\r")[2] == said
 
 

@@ -90,7 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
             where = own_file(arguments.overrides, str(error), built)
             raise InputError(f"{where}{error}") from None
     stage = first_stage(config.behaviour) if config.start.state else ""
-    begins = f"begins with its first stage, {stage}, however the body is then" if stage else ""
+    first = f"begins with its first stage, {stage}, however the body is then"
+    begins = f"{config.behaviour.name} {first}" if stage else ""
     notices = [result.notice, begins]
     if result.already_there:
         notices.append(f"already there, not redone (--force redoes it): {result.folder}")

@@ -39,7 +39,6 @@ BETTER = {
     "revolutions": 1,
     "parts_succeeded": 1,
     "parts_begun": 1,
-    "duration": 1,  # of a run that broke down
     "other_contact": -1,  # [s] on the ground: who fell first lies longest
     "up_from": -1,
     "held": 1,
@@ -49,6 +48,7 @@ BETTER = {
     "lowest_in_the_end": 1,
     "lean_end": -1,
     "speed_end": -1,
+    "duration": 1,  # of a run that broke down
 }
 MOST_VALUES = 6  # of a key in which runs of a row differ
 LOOKS = tuple(column.name for column in appearance.COLUMNS)
