@@ -98,7 +98,7 @@ def test_keys_that_change_together_are_told_by_the_first():
 
 def test_failures_are_counted_by_kind():
     counted = failures_of(grid(table([{"behaviour": "a"}], seeds=6, missing=1)).runs)
-    assert counted.to_dict("records") == [{"stalled": 1, "failed to run": 1}]
+    assert counted.to_dict("records") == [{"stalled for … s": 1, "failed to run": 1}]
 
 
 def test_without_any_result_there_are_still_charts():

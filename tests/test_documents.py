@@ -62,7 +62,8 @@ def laughs(form, times):
         ("a: 1\n---\nb: 2", "2: is no YAML: expected a single document in the stream, "
          "but found another document"),
         ("a:\n\tb: 1", "2: is no YAML: the line begins with a tab, and YAML indents with spaces"),
-        ("a: 1\n  \tb: 1", "2: is no YAML: the line begins with a tab, "),
+        ("a: 1\n  \tb: 1", "2: is no YAML: the line begins with a tab, and YAML indents with "
+         "spaces"),
         ("a: [1", "2: is no YAML: while parsing a flow sequence, did not find expected ',' or ']'"),
     ],
 )  # fmt: skip
