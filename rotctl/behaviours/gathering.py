@@ -1,6 +1,6 @@
 """A foot that is put down beside the other one: who stands anyhow comes to stand as one begins."""
 
-from math import copysign, cos, pi, sin
+from math import copysign
 from typing import Literal
 
 import numpy as np
@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.swinging import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
+from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id, body_ids
@@ -56,8 +56,4 @@ class Beside:
         ahead = dot(stands - place, forward)
         task["acceleration"] = arrival(ahead, dot(velocity, forward), left) * forward
         task["acceleration"] += arrival(aside, dot(velocity, side), left) * side
-        px, py, _ = place.tolist()
-        over = self.lift * sin(pi * gone) - (UNDER if gone > REACH_DOWN else 0.0)
-        task["target"][:3] = [px, py, model.ground.height(px, py) + self.height + over]
-        task["velocity"] = velocity
-        task["velocity"][2] = self.lift * pi / self.time * cos(pi * gone)
+        rise(task, scene, self, gone, place, velocity)

@@ -7,7 +7,6 @@ swing foot and goes to where that point will be when the foot is down
 
 from dataclasses import field
 from functools import lru_cache
-from math import cos, pi, sin
 from typing import Literal
 
 import mujoco
@@ -16,7 +15,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import footholds, stance, support, swing_foot
 from rotctl.behaviours.scene import Scene, Step
 from rotctl.behaviours.support import Facing
-from rotctl.behaviours.swinging import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
+from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id
@@ -131,9 +130,7 @@ class Stepping:
         vx, vy, _ = velocity.tolist()
         soon = max(left, SOONEST)
         task["acceleration"] = [arrival(x - px, vx, soon), arrival(y - py, vy, soon), 0.0]
-        over = self.lift * sin(pi * gone) - (UNDER if gone > REACH_DOWN else 0.0)
-        task["target"][:3] = [px, py, scene.model.ground.height(px, py) + self.height + over]
-        task["velocity"] = [vx, vy, self.lift * pi / self.time * cos(pi * gone)]
+        rise(task, scene, self, gone, place, velocity)
 
     def feet(self, model: Model) -> tuple[int, int]:
         """MuJoCo ids of the left foot and the right one."""

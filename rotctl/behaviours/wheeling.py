@@ -6,7 +6,7 @@ target excursion has. Hands and feet are put on one line along it, lowered over 
 of that line that the capture point is on, as a pendulum does.
 """
 
-from math import copysign, cos, pi, radians, sin
+from math import copysign, radians
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -15,7 +15,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.launch import Base, captured
 from rotctl.behaviours.scene import Scene
-from rotctl.behaviours.swinging import REACH_DOWN, SOONEST, UNDER, arrival, velocity_of
+from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.linear import product
 from rotctl.mechanics.bodies import body_id, body_ids
@@ -242,8 +242,4 @@ class Stride:
         aside = rests(scene, across) - dot(place, across)
         task["acceleration"] = arrival(way, dot(velocity, along), left) * along
         task["acceleration"] += arrival(aside, dot(velocity, across), left) * across
-        x, y, _ = place.tolist()
-        over = self.lift * sin(pi * gone) - (UNDER if gone > REACH_DOWN else 0.0)
-        task["target"][:3] = [x, y, scene.model.ground.height(x, y) + self.height + over]
-        task["velocity"] = velocity
-        task["velocity"][2] = self.lift * pi / self.time * cos(pi * gone)
+        rise(task, scene, self, gone, place, velocity)
