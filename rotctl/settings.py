@@ -26,7 +26,16 @@ Fraction = Annotated[NonNegative, Field(le=1)]
 Vector = tuple[Finite, Finite, Finite]
 NonNegativeVector = tuple[NonNegative, NonNegative, NonNegative]
 Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]
-Drawn = Finite | Range  # drawn from a range; a number stands for itself
+
+
+def _narrowed(drawn: float | tuple[float, float]) -> float | tuple[float, float]:
+    """A range without width as the number that it is: written otherwise it would be another run."""
+    low, high = ends(drawn)
+    return drawn if low < high else low + 0.0  # -0 is 0
+
+
+Drawn = Annotated[Finite | Range, AfterValidator(_narrowed)]
+"""Drawn from a range; a number stands for itself."""
 
 
 def ends(drawn: float | tuple[float, float]) -> tuple[float, float]:

@@ -14,6 +14,7 @@ from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
 from rotctl.mechanics.state import read
 from rotctl.rotations import rotate
+from rotctl.run import in_memory
 
 
 def at_a_state(overrides):
@@ -136,3 +137,28 @@ def test_the_clock_looks_poses_up_by_time_whatever_the_body_does(behaviour):
 def test_the_clock_is_refused_where_it_would_do_nothing_or_nonsense(overrides, message):
     with pytest.raises(InputError, match=re.escape(message)):
         scenario.build(load([*overrides, "excursion=clock"]))
+
+
+@pytest.mark.parametrize(
+    ("behaviour", "measure", "why"),
+    [
+        ("turn_over", "root", "is about the velocity of a roll, which {} has not"),
+        ("stand", "integral", "acts where a task turns or holds, and in {} none does"),
+    ],
+)
+def test_what_no_task_looks_at_is_refused(behaviour, measure, why):
+    why = why.format(f"behaviour={behaviour}, a list of stages,")
+    message = f"excursion={measure}: {why}; choose excursion=oriented"
+    with pytest.raises(InputError, match=re.escape(message)):
+        scenario.build(load([f"behaviour={behaviour}", f"excursion={measure}"]))
+
+
+def test_the_integral_of_a_turn_is_another_run():
+    turns = [
+        in_memory(
+            scenario.build(load(["behaviour=turn_over", f"excursion={measure}", "duration=1"]))
+        )
+        for measure in ("oriented", "integral")
+    ]
+    one, other = (buffer.arrays()["trajectory/qpos"] for buffer, _ in turns)
+    assert np.abs(one - other).max() > 1e-6

@@ -21,6 +21,17 @@ def test_the_same_config_is_the_same_run():
     assert run_id() == run_id("plant.mass=-0.0")
 
 
+@pytest.mark.parametrize(
+    "others",
+    [
+        ["disturbance.time=[1,1]", "disturbance.time=1.0"],
+        ["disturbance.direction=-0.0", "disturbance.direction=0", "disturbance.direction=[0,0]"],
+    ],
+)
+def test_a_range_without_width_is_the_number_that_it_is(others):
+    assert len({run_id("disturbance=push", other) for other in others}) == 1
+
+
 def test_whatever_changes_the_run_changes_its_id():
     ids = [
         run_id(*overrides)

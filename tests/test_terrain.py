@@ -14,7 +14,7 @@ from rotctl.mechanics import model as models
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
-from rotctl.run import LOG_NAME, run
+from rotctl.run import LOG_NAME, in_memory, run
 from rotctl.scenario import build, model_of
 from rotctl.schema import check
 from rotctl.simulation.episode import Episode
@@ -180,6 +180,17 @@ def test_a_run_ends_where_it_leaves_the_ground(overrides, where, tmp_path):
     assert log.events[-1][1] == summary["failure_reason"]
     extent = build(load(["seed=1", *overrides])).model.ground.extent
     assert all(extent.has(x, y) for x, y, _ in log["trajectory/com"])
+
+
+def test_a_start_beside_the_ground_is_refused():
+    state = "{place:[-9,0.5],gap:0.05,orientation:[1,0,0,0],velocity:[0,0,0],"
+    start = f"+start.state={state}angular_velocity:[0,0,0],pose:{{}},speeds:{{}}}}"
+    message = (
+        r"start: begins beside the ground, at x = -9\.\d\d m, y = 0\.\d\d m: "
+        "it reaches from x = -6 to 60 m and 6 m to either side"
+    )
+    with pytest.raises(InputError, match=message):
+        in_memory(build(load(["terrain=uneven", "start=rest", start])))
 
 
 def test_where_there_is_no_end_nothing_ends(tmp_path):

@@ -20,7 +20,6 @@ from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import mirrored
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.settings import PoseGains
-from rotctl.errors import InputError
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
@@ -78,11 +77,6 @@ class Staged:
             InputError: a body or a joint is not there, or a task has no gains.
         """
         self._settings, self._model, self._control = settings, model, control
-        if measured.measure == "clock":
-            raise InputError(
-                f"excursion=clock: looks poses up by time, which behaviour={settings.name}, "
-                "a list of stages, does not; choose excursion=oriented"
-            )
         self._measured, self._period = measured, 1.0 / control.rate
         self._frame = frame_of(settings.roll_about, settings.heading, settings.turn_about)
         self.axes = self._frame.axes

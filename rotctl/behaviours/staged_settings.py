@@ -6,13 +6,15 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.aims import Hold, Turn
 from rotctl.behaviours.facing import TurnAbout
 from rotctl.behaviours.flight_settings import TUCK
 from rotctl.behaviours.staged import Staged
 from rotctl.behaviours.stages import Stage, TaskSettings, kinds_of
 from rotctl.behaviours.touching import Launched
 from rotctl.control import ControllerSettings
-from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.errors import InputError
+from rotctl.mechanics.excursion import ExcursionName, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
 from rotctl.settings import SPARSE, STRICT, Finite, Positive
@@ -89,5 +91,24 @@ class StagedSettings:
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
     ) -> Staged:
-        """The behaviour of one run."""
+        """The behaviour of one run.
+
+        Raises:
+            InputError: as for `Staged`, or nothing here is measured so.
+        """
+        self._require_measured(measured.measure)
         return Staged(self, model, control, measured)
+
+    def _require_measured(self, measure: ExcursionName) -> None:
+        """Raises InputError where a measure acts on nothing."""
+        here = f"behaviour={self.name}, a list of stages,"
+        lacking = {
+            "clock": f"looks poses up by time, which {here} does not",
+            "root": f"is about the velocity of a roll, which {here} has not",
+        }
+        every = [self.tasks, *(stage.tasks for stage in self.stages)]
+        spins = [task for tasks in every for task in tasks.values() if task.kind == "spin"]
+        if not any(isinstance(task.aim, Hold | Turn) for task in spins):
+            lacking["integral"] = f"acts where a task turns or holds, and in {here} none does"
+        if measure in lacking:
+            raise InputError(f"excursion={measure}: {lacking[measure]}; choose excursion=oriented")

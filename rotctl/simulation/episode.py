@@ -12,6 +12,7 @@ import mujoco
 
 from rotctl.behaviours.behaviour import Behaviour, Signals
 from rotctl.control import Command, Controller, Decision
+from rotctl.errors import InputError
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.plant import Motors, Senses
@@ -142,7 +143,11 @@ class Episode:
             yield moment
 
     def step(self) -> Moment | None:
-        """The next control period; None where the episode is over."""
+        """The next control period; None where the episode is over.
+
+        Raises:
+            InputError: there is no ground where it starts.
+        """
         parts, data, mark = self._parts, self.data, self._mark
         model, behaviour, controller = parts.model, parts.behaviour, parts.controller
         period = 1.0 / controller.settings.rate
@@ -158,10 +163,12 @@ class Episode:
             truth = parts.observer.read(data)
             state = controller.read(parts.senses.look(data))
         mark("state")
-        self.left = _left(model.ground, truth)
-        if self.left:
+        before, beside = self.memory, _beside(model.ground, truth)
+        if beside and before is None:
+            raise InputError(f"start: begins beside the ground, at {beside}")
+        if beside:
+            self.left = f"left the ground at t = {truth.time:.2f} s, {beside}"
             return None
-        before = self.memory
         if before is None:
             before = behaviour.begin(self._pitch, state)
         self.memory = memory = behaviour.advance(before, state)
@@ -194,12 +201,11 @@ class Episode:
         )
 
 
-def _left(ground: Ground, state: State) -> str:
-    """That the centre of mass has left the ground, and where; empty while it has not."""
+def _beside(ground: Ground, state: State) -> str:
+    """Where the centre of mass is, and where there is ground; empty while it is over that."""
     x, y, _ = state.momentum.com.tolist()
-    if ground.extent.has(x, y):
-        return ""
     return (
-        f"left the ground at t = {state.time:.2f} s, x = {x:.2f} m, y = {y:.2f} m: "
-        f"it reaches {ground.extent}"
+        ""
+        if ground.extent.has(x, y)
+        else f"x = {x:.2f} m, y = {y:.2f} m: it reaches {ground.extent}"
     )

@@ -49,7 +49,8 @@ def simulate(
             True ends the run there, as nothing broke.
 
     Raises:
-        InputError: the duration is no whole number of control periods.
+        InputError: the duration is no whole number of control periods, or the start is beside the
+            ground.
     """
     mj, rate = parts.model.mj, parts.controller.settings.rate
     steps = round(duration * rate)
