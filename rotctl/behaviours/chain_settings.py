@@ -19,6 +19,8 @@ from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
 from rotctl.settings import MOST_PARTS, SPARSE, STRICT, Positive
 
+LEAST_TURNS = 2.0  # [rev] of a roll that follows another part
+
 
 @validated(frozen=True, config=STRICT)
 class PartSettings:
@@ -106,6 +108,8 @@ class ChainSettings:
                     f"{place}: {part.behaviour.name} rolls on, and others follow it; "
                     "'behaviour=NAME +finish=stand' comes to an end"
                 )
+        for number in sorted({part for way in self.taken for part in way.parts[1:]}):
+            _require_turns(self.parts[number], number)
         for number in last if self.again is not None else ():
             if not self.parts[number].ends:
                 raise ValueError(
@@ -142,6 +146,20 @@ class ChainSettings:
     def make(self, model: Model, control: ControllerSettings, measured: ExcursionSettings) -> Chain:
         """The behaviour of one run."""
         return Chain(self, model, control, measured)
+
+
+def _require_turns(part: PartSettings, number: int) -> None:
+    """Raises ValueError for a counted roll that is told to end before its first turn is over."""
+    behaviour = part.behaviour
+    finish = None if isinstance(behaviour, StagedSettings) else behaviour.finish
+    if finish is None or not 0.0 < finish.revolutions < LEAST_TURNS:
+        return
+    place = part.place(number).removeprefix("behaviour.")
+    raise ValueError(
+        f"{place}: behaviour.finish.revolutions={finish.revolutions:g}: told to end in its first "
+        f"one a roll out of a stand stops over its hands; give {LEAST_TURNS:g} or more, or 0, "
+        "which counts none"
+    )
 
 
 def first_stage(settings: ChainSettings | RollingSettings | StagedSettings) -> str:
