@@ -83,6 +83,9 @@ def _missing(
         if told == math.inf:
             return _before_it_is_told(criteria, commanded, columns, lasted)
         if begins < lasted:
+            wanted = commanded.get("revolutions_commanded", 0.0)
+            if finish.miscounted(columns["revolutions"], wanted):
+                return ""
             rest, upright = criteria.stand.rest, standing.upright_from(log, criteria.stand) * period
             began = _resting("it began to stand up", begins, lasted, rest)
             return began or (

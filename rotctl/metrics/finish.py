@@ -91,7 +91,7 @@ def upright(mj: mujoco.MjModel) -> float:
     return float(data.subtree_com[ROOT, 2])
 
 
-def _miscounted(revolutions: float, wanted: float) -> str:
+def miscounted(revolutions: float, wanted: float) -> str:
     """That it has not rolled as often as it was to; any number is right where none is wanted."""
     if not wanted or abs(revolutions - wanted) < HALF:
         return ""
@@ -128,7 +128,7 @@ def judge(
     reason = (
         failure_reason(roll, criteria.roll, roll.duration)
         or ("never stood up" if row == steps else "")
-        or _miscounted(roll.revolutions, counted)
+        or miscounted(roll.revolutions, counted)
         or standing.failure(stood, settings, (steps - rest) * period)
         or (f"stands {height:.2f} m high" if height <= criteria.height * upright else "")
     )

@@ -82,11 +82,12 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
 
 
 def upright_from(log: Arrays, criteria: StandingCriteria) -> int:
-    """The row from which on it is upright and still, to the end; the number of rows if none is."""
+    """The row from which on it is upright, still, and on its feet alone; how many, if none is."""
     up = np.clip(floats(log, "trajectory/trunk_axes")[:, 2, 2], -1.0, 1.0)
     lean = np.degrees([math.acos(one) for one in up.tolist()])
     speed = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
-    off = np.flatnonzero((lean >= criteria.lean) | (speed >= criteria.speed))
+    moves = (lean >= criteria.lean) | (speed >= criteria.speed)
+    off = np.flatnonzero(moves | on_others(log, criteria.feet))
     return int(off[-1]) + 1 if len(off) else 0
 
 
