@@ -14,6 +14,7 @@ from fuzz.giving import given, import_all
 from fuzz.samples import make
 
 INPUTS = 24
+LITTLE = 2**27  # [bytes] in place of what an input may take, for tests that take it
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +67,7 @@ def trouble(*_):
 
 
 def asks_for_much(*_):
-    return len(bytearray(child.MEMORY + 2**27)) * 0
+    return len(bytearray(child.MEMORY + 2**24)) * 0
 
 
 def waits(*_):
@@ -146,6 +147,7 @@ def starts(*_):
 )
 def test_a_fault_is_seen(tmp_path, monkeypatch, command, fault):
     monkeypatch.setattr(child, "CPU", 1 if command is computes else 20)
+    monkeypatch.setattr(child, "MEMORY", LITTLE)
     monkeypatch.setattr(child, "WALL", 0.5 if command is waits else 300.0)
     here = tmp_path / "in"
     here.mkdir()
@@ -156,7 +158,8 @@ def test_a_fault_is_seen(tmp_path, monkeypatch, command, fault):
     assert found.fault == fault.format(**vars(names))
 
 
-def test_what_the_parent_holds_is_no_fault_of_the_child(tmp_path):
+def test_what_the_parent_holds_is_no_fault_of_the_child(tmp_path, monkeypatch):
+    monkeypatch.setattr(child, "MEMORY", LITTLE)
     here = tmp_path / "in"
     here.mkdir()
     held = bytearray(b"x") * child.MEMORY

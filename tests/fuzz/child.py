@@ -20,6 +20,7 @@ from pathlib import Path
 CPU = 20  # [s]
 WALL = 90.0  # [s]; a busy machine gives a third of its CPU
 MEMORY = 2**30  # [bytes] resident, beyond what a child holds as it begins
+SPACE = 2**33  # [bytes] of addresses: libraries set some aside that they never use
 HELPERS = ("git", "ffmpeg", "fc", Path(sys.executable).name)  # programs that rotctl runs
 LONGEST = 2500  # characters of what is said on stderr, with all valid choices
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
@@ -100,7 +101,7 @@ def _live(command, folder, allowed, report):
         os.setsid()
         signal.signal(signal.SIGXCPU, signal.SIG_DFL)
         resource.setrlimit(resource.RLIMIT_CPU, (CPU + 1, CPU + 5))
-        resource.setrlimit(resource.RLIMIT_AS, (8 * MEMORY, 8 * MEMORY))
+        resource.setrlimit(resource.RLIMIT_AS, (SPACE, SPACE))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         os.chdir(folder)
         os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
