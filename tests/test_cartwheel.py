@@ -65,6 +65,21 @@ def test_it_turns_in_its_plane_head_down_over_straight_arms(wheels):
         assert (log["trajectory/com"][over, 2] > 0.7).all()  # [m] a roll's is at 0.3
 
 
+def test_feet_in_the_air_are_seldom_pressed_past_their_stops(wheels):
+    """Without `limits` an ankle is, by 0.1 rad or more, in nine tenths of the time."""
+    shares = []
+    for scenario, log in wheels:
+        model, names = scenario.model, [s.name for s in scenario.config.behaviour.stages]
+        stage = log["command/stage"]
+        over_hands = (stage >= names.index("tip")) & (stage <= names.index("first_foot"))
+        ankles = [i for i, name in enumerate(model.joint_names) if name.startswith("ankle")]
+        angles = log["trajectory/qpos"][over_hands][:, model.angles][:, ankles]
+        low, high = model.joint_range[ankles].T
+        past = np.maximum(low - angles, angles - high).max(axis=1)
+        shares.append((past > 0.1).mean())
+    assert np.mean(shares) < 0.7
+
+
 def test_to_the_right_it_is_the_mirror_image():
     """Without scatter, until hands come down: what grows from rounding stays small till then."""
     left, right = still(), still(RIGHT)
