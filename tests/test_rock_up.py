@@ -1,10 +1,12 @@
 """From lying on the back or a side over the shoulders to standing, and again where it fails."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from rotctl.behaviours.until import Leant
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
@@ -104,6 +106,19 @@ def test_the_throw_lasts_until_the_trunk_is_over(rocked):
         first, last = np.searchsorted(log["command/stage"], [THROW, THROW + 1])
         assert log["trajectory/trunk_axes"][last, 2, 2] < 0.0
         assert last - first >= round(0.39 * 120)
+
+
+@pytest.mark.parametrize(("terrain", "slope"), [("flat", 0.0), ("incline", 6.0), ("decline", -6.0)])
+@pytest.mark.parametrize(("beyond", "leant"), [(-1.0, False), (1.0, True)])
+def test_leaning_is_measured_from_the_ground(terrain, slope, beyond, leant):
+    """On the back, feet ahead: head down by the slope already, where that leads up."""
+    config = load(["behaviour=rock_back", f"terrain={terrain}"])
+    angle = np.radians(-(92.0 + slope + beyond))  # about left: its head goes back
+    axes = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    momentum = SimpleNamespace(com=np.array([0.3, 0.1, 0.4]))
+    state = SimpleNamespace(trunk_axes=axes, momentum=momentum, time=1.0)
+    scene = SimpleNamespace(model=build(config).model, state=state, begin=SimpleNamespace(time=0.0))
+    assert Leant("leant", 92.0, 0.39).met(scene) == leant
 
 
 @pytest.mark.parametrize(("speed", "curls"), [(0.0, True), (2.0, False)])

@@ -17,7 +17,11 @@ UP = np.array([0.0, 0.0, 1.0])
 
 @validated(frozen=True, config=STRICT)
 class Upright:
-    """A body's up is the world's, whatever its turn about it: attitude."""
+    """A body's up is the world's, whatever its turn about it: attitude.
+
+    Of one that is on the ground it is the ground's normal: a foot that is held level on a slope
+    stands on its edge.
+    """
 
     law: Literal["upright"]
 
@@ -26,9 +30,16 @@ class Upright:
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
-        w, _, _, z = scene.state.data.xquat[int(task["body"])].tolist()
+        body, state = int(task["body"]), scene.state
+        w, _, _, z = state.data.xquat[body].tolist()
         length = sqrt(w * w + z * z) or 1.0
-        task["target"] = [w / length, 0.0, 0.0, z / length]
+        target = w / length, 0.0, 0.0, z / length
+        if body in state.contacts.body.tolist():
+            x, y, _ = state.data.xpos[body].tolist()
+            normal = scene.model.ground.normal(x, y).tolist()
+            if normal[2] < 1.0:
+                target = advanced(target, rotation_between((0.0, 0.0, 1.0), normal))
+        task["target"] = target
 
 
 @validated(frozen=True, config=STRICT)

@@ -94,7 +94,9 @@ class Near:
 
 @validated(frozen=True, config=STRICT)
 class Leant:
-    """The trunk leans so far from upright, whichever way [deg]: 90 lies, 180 is head down.
+    """The trunk leans so far, whichever way [deg]: 90 lies, 180 is head down.
+
+    From the ground's normal: who lies with the head downhill has not begun to lean by that.
 
     Attributes:
         after: not before so long in the stage [s].
@@ -109,7 +111,9 @@ class Leant:
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
-        leant = float(scene.state.trunk_axes[2, 2]) <= cos(radians(self.angle))
+        x, y, _ = scene.state.momentum.com.tolist()
+        up = dot(scene.model.ground.normal(x, y), scene.state.trunk_axes[:, 2])
+        leant = up <= cos(radians(self.angle))
         return leant and scene.state.time - scene.begin.time >= self.after - 1e-9
 
 
