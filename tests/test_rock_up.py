@@ -114,7 +114,8 @@ def test_leaning_is_measured_from_the_ground(terrain, slope, beyond, leant):
     """On the back, feet ahead: head down by the slope already, where that leads up."""
     config = load(["behaviour=rock_back", f"terrain={terrain}"])
     angle = np.radians(-(92.0 + slope + beyond))  # about left: its head goes back
-    axes = np.array([[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]])
+    c, s = np.cos(angle), np.sin(angle)
+    axes = np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
     momentum = SimpleNamespace(com=np.array([0.3, 0.1, 0.4]))
     state = SimpleNamespace(trunk_axes=axes, momentum=momentum, time=1.0)
     scene = SimpleNamespace(model=build(config).model, state=state, begin=SimpleNamespace(time=0.0))
