@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.ways import FaceDown, Rolls, Way
 from rotctl.config import load
@@ -80,7 +81,17 @@ def test_who_falls_takes_the_way_of_how_it_lies_then():
     hasty = replace(first, when=replace(first.when, speed=9.0))
     falling = replace(turned(0.0, {}), velocity=(-3.0, 0.0, 0.0))
     log = simulated(state=falling, seconds=1.2, ways=(rolls, hasty, *others))
-    assert parts(log) == ["at once", "rock_back"]
+    assert parts(log)[:2] == ["at once", "rock_back"]
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_who_comes_to_lie_on_the_front_while_it_turns_gets_up_from_there(side):
+    """65 degrees off the front, for which 60 count as that, and tumbling at 6 rad/s."""
+    down = Rotation.from_euler("y", 90.0, degrees=True)  # on the front, the head ahead
+    aside = down * Rotation.from_euler("z", side * 65.0, degrees=True)
+    there = tuple(aside.as_quat(scalar_first=True).tolist())
+    falling = replace(turned(0.0, {}), orientation=there, angular_velocity=(0.0, 0.0, -side * 6.0))
+    assert parts(simulated(state=falling, seconds=0.6)) == ["rock_back", "press_up"]
 
 
 def test_who_moves_through_a_squat_does_not_stand_up_at_once():

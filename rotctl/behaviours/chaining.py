@@ -146,6 +146,11 @@ class Chain:
         if self._failed(before.inner, memory, state):
             way = ways.chosen(self._ways, self._model, state)
             return self._begun(way, self._ways[way].parts[0], memory, state, anew=True)
+        if self._lies_down(memory):
+            way = ways.chosen(self._ways, self._model, state)
+            first = self._ways[way].parts[0]
+            if way != memory.way and self._settings.parts[first].behaviour.kind == "staged":
+                return self._begun(way, first, memory, state, anew=True)
         following = self._following(memory)
         if following is not None and self._over(memory, state):
             return self._begun(memory.way, following, memory, state)
@@ -156,6 +161,11 @@ class Chain:
         parts = self._ways[memory.way].parts
         place = parts.index(memory.part) + 1
         return parts[place] if place < len(parts) else None
+
+    def _lies_down(self, memory: ChainMemory) -> bool:
+        """Whether it is in the first stage of its way: who tumbles may come to lie otherwise."""
+        inner, first = memory.inner, self._ways[memory.way].parts[0]
+        return memory.part == first and isinstance(inner, StagedMemory) and inner.stage == 0
 
     def _failed(self, before: Any, memory: ChainMemory, state: State) -> bool:
         """Whether the way has come to nothing, from what the part remembered before."""
