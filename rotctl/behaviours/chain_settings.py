@@ -83,7 +83,8 @@ class ChainSettings:
         again: who lies lower than that in the last stage of all begins with the first part again
             [m]; the centre of mass over the ground. Nobody does if None.
         ways: which parts follow each other, by how the body is as it begins, or begins again; who
-            falls back to the first stage of a part chooses anew, too. All in a row if None.
+            falls back to the first stage of a part chooses anew, too, and who is in the first stage
+            of a way among those that begin with stages. All in a row if None.
     """
 
     name: str
