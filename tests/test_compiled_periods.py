@@ -126,7 +126,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),
         *("align_with_slope", "poses", "reference", "angular_momentum", "pace", "finish"),
-        *("course", "catch", "oblique"),
+        *("course", "catch", "oblique", "alighting"),
         *("source", "description"),
     }
 

@@ -44,7 +44,8 @@ class Case:
 
 CASES = {
     "default": Case(
-        ("controller=rolling",),  # listening also has the gains of getting up
+        # listening also has the gains of getting up; alighting has a case of its own
+        ("controller=rolling", "behaviour.alighting=null"),
         r"(?!character\.bodies|criteria|controller\.thresholds).*",
         {
             r"controller\.merging\.angle": "of hills, where contacts are near each other",
@@ -139,6 +140,11 @@ CASES = {
         ("behaviour=forward_roll", "+catch=arm", "disturbance=push", "disturbance.time=0.3"),
         r"behaviour\.catch\..*",
         seconds=1.5,
+    ),
+    "alighting": Case(
+        ("disturbance=push", "disturbance.time=0.3", "disturbance.direction=90"),
+        r"behaviour\.alighting\..*",
+        seconds=2.0,
     ),
     "oblique": Case(("+behaviour.oblique=[12,5,-3]",), r"behaviour\.oblique.*"),
     "path": Case(

@@ -119,7 +119,7 @@ WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are fo
     "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Near.level", "Tilted.angle",
     "Leant.angle", "FaceDown.angle", "OnFeet.lean", "Rolls.tilt",
     "Launched.knee", "Leaves.angle", "CatchSettings.free", "CatchSettings.gain",
-    "CatchSettings.out", "FinishSettings.after", "FinishSettings.ahead",
+    "CatchSettings.out", "AlightingSettings.most", "FinishSettings.after", "FinishSettings.ahead",
     "FinishSettings.revolutions", "FinishSettings.within", "PaceSettings.approach",
     "PaceSettings.back", "PaceSettings.brake", "PaceSettings.calm", "PaceSettings.gain",
     "PaceSettings.leave", "PaceSettings.most", "PaceSettings.patience", "PaceSettings.pose",
@@ -138,7 +138,7 @@ def numbers(shape):
 def parts_of_a_roll():
     """What keeps a roll at its pace, on its course and off its side, and ends it."""
     kinds = get_type_hints(RollingSettings)
-    named = [kinds[name] for name in ("pace", "finish", "course", "catch")]
+    named = [kinds[name] for name in ("pace", "finish", "course", "catch", "alighting")]
     return [part for kind in named for part in get_args(kind) if part is not NoneType]
 
 

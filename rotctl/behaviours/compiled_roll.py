@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from rotctl.behaviours.alighting import Alighting
 from rotctl.behaviours.catching import Catch
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.pacing import Clock, Pace
@@ -112,6 +113,27 @@ class CompiledRoll:
         )
         self._kept.append(made)
         self.constants.catch = ctypes.addressof(made)
+
+    def add_alighting(self, alighting: Alighting) -> None:
+        """Bring limbs aside as they come down, too."""
+        given, limbs = alighting.settings, alighting.limbs
+        pairs = [pair for _, joints in limbs for pair in joints]
+        ends = np.cumsum([len(joints) for _, joints in limbs])
+        made = structure("Alighting")(
+            lead=given.lead,
+            sinking=given.sinking,
+            reach=given.reach,
+            most=given.most,
+            limbs=len(limbs),
+            body=self._at(np.array([body for body, _ in limbs], np.int32)),
+            end=self._at(ends.astype(np.int32)),
+            motor=self._at(np.array([motor for motor, _ in pairs], np.int32)),
+            joint=self._at(np.array([joint for _, joint in pairs], np.int32)),
+            low=self._at(alighting.low),
+            high=self._at(alighting.high),
+        )
+        self._kept.append(made)
+        self.constants.alighting = ctypes.addressof(made)
 
     def add_oblique(self, oblique: Sequence[float]) -> None:
         """Keep an oblique axis of the trunk, see `Oblique` [deg]."""

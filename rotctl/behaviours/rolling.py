@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rotctl.behaviours.alighting import Alighting
 from rotctl.behaviours.bearing import Bearing, Bearings
 from rotctl.behaviours.behaviour import Placement, Signals, gains_of
 from rotctl.behaviours.catching import Catch
@@ -80,6 +81,8 @@ class Rolling:
         self._waiting = Waiting(given.pose, model) if given is not None and given.pose else None
         about, catch = settings.roll_about, settings.catch
         self._catch = Catch(catch, model, about) if catch is not None else None
+        alights = settings.alighting
+        self._alighting = Alighting(alights, model) if alights is not None else None
         gains = gains_of(control, self.tasks)
         by_momentum = settings.angular_momentum is not None
         if by_momentum and measured.measure == "root":
@@ -153,6 +156,9 @@ class Rolling:
         if self._catch is not None:
             rise = self._catch.rise(memory.axis, state.momentum.angular_velocity)
             pose_a, pose_b = self._catch.spread(pose_a, rise), self._catch.spread(pose_b, rise)
+        if self._alighting is not None:
+            turns = self._alighting.turns(state, memory.axis, on.left)
+            pose_a, pose_b = (self._alighting.moved(pose, turns) for pose in (pose_a, pose_b))
         self._targets[0] = memory.origin + state.time * velocity
         target = memory.angle + state.time * spin  # phi_hat
         self._targets[1] = excursion.error(now, target, on.left, measure)
@@ -210,6 +216,8 @@ class Rolling:
             made.add_oblique(self._oblique)
         if self._catch is not None:
             made.add_catch(self._catch)
+        if self._alighting is not None:
+            made.add_alighting(self._alighting)
         if self._pace:
             made.add_pace(self._pace, on.way, self._over, self._usual)
         if self._waiting is not None:

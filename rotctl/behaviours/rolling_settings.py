@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.alighting import AlightingSettings
 from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import Finishing, FinishSettings
@@ -48,6 +49,7 @@ class RollingSettings:
         catch: what catches it where it tips over its side; nothing by default.
         oblique: how far the axis that is kept lies from there towards the head, over the phase, see
             `Oblique` [deg]; not at all by default.
+        alighting: which limbs come down further to the side that it goes to; none by default.
     """
 
     name: str
@@ -65,6 +67,7 @@ class RollingSettings:
     course: CourseSettings | None = None
     catch: CatchSettings | None = None
     oblique: Oblique | None = None
+    alighting: AlightingSettings | None = None
     source: str = ""
     description: str = ""
 
@@ -86,6 +89,8 @@ class RollingSettings:
             raise ValueError("a course commands velocities: give no angular_momentum")
         if self.catch and self.roll_about == "head":
             raise ValueError("a roll about its head lies on its side, and has nothing to catch")
+        if self.alighting and self.roll_about == "head":
+            raise ValueError("a roll about its head lies on its side: no limb comes down beside it")
         if self.oblique and self.roll_about == "head":
             raise ValueError(
                 "an oblique axis lies between left or right and the head: roll_about=head has none"

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
+from rotctl.behaviours.alighting import AlightingSettings
 from rotctl.behaviours.balance import Capture, Lunge
 from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.chain_settings import ChainSettings, PartSettings
@@ -118,6 +119,7 @@ UNITS: Units = {
     | all_of(rate, "own", "settling")
     | all_of(speed, "easing"),
     CatchSettings: all_of(time, "lead"),
+    AlightingSettings: all_of(time, "lead") | all_of(speed, "sinking") | all_of(length, "reach"),
     FinishSettings: all_of(length, "reach") | all_of(rate, "turning"),
     ChainSettings: all_of(length, "again"),
     OnFeet: all_of(length, "out") | all_of(speed, "speed"),

@@ -112,6 +112,15 @@ typedef struct {
   const double *out, *low, *high;
 } Catch;
 
+// Limbs that come down, behaviours/alighting.py: bodies (limbs), and motors and joints one limb's
+// after the other's, each up to its `end` (limbs).
+typedef struct {
+  double lead, sinking, reach, most;
+  int limbs;
+  const int *body, *end, *motor, *joint;
+  const double *low, *high;
+} Alighting;
+
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
 // `coefficients` (2, waves, nu), and `waiting` (nu) or none is of behaviours/waiting.py; its two
 // tasks are where the command has them.
@@ -123,6 +132,7 @@ typedef struct {
   const double *table, *rise, *coefficients, *low, *high, *waiting;
   const Pace* pace;
   const Catch* catch;
+  const Alighting* alighting;
   Task* task;
 } Roll;
 

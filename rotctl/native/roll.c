@@ -91,6 +91,37 @@ static void spread(const Catch* c, const Reading* now, const RollMemory* it, dou
   }
 }
 
+// behaviours/alighting.py `turns` and `moved`, of both poses
+static void alight(const Alighting* g, const mjData* d, const Roll* r, const Reading* now,
+                   const RollMemory* it, double* a, double* b) {
+  const double *left = r->axes + 3, *middle = d->subtree_com + 3;
+  double ahead = g->lead * along(left, now->com_velocity), lean[3], *pose[2] = {a, b};
+  for (int i = 0; i < 3; i++) lean[i] = it->axis[i] - left[i];
+  for (int limb = 0, first = 0; limb < g->limbs; first = g->end[limb++]) {
+    const double *place = d->xipos + 3 * g->body[limb], *moving = d->cvel + 6 * g->body[limb];
+    double off[3], turned[3], way[3], arm[8], scale = g->reach * g->reach;
+    for (int i = 0; i < 3; i++) off[i] = place[i] - middle[i], way[i] = place[i] - now->com[i];
+    cross(turned, moving, off);
+    double share = fmin(fmax(-(moving[5] + turned[2]) / g->sinking, 0), 1);
+    double missing = share * (ahead + along(way, lean));
+    for (int k = first; k < g->end[limb]; k++) {
+      const double* anchor = d->xanchor + 3 * g->joint[k];
+      for (int i = 0; i < 3; i++) off[i] = place[i] - anchor[i];
+      cross(turned, d->xaxis + 3 * g->joint[k], off);
+      arm[k - first] = along(left, turned);
+      scale += arm[k - first] * arm[k - first];
+    }
+    for (int k = first; k < g->end[limb]; k++) {
+      int motor = g->motor[k];
+      double by = fmin(fmax(arm[k - first] * missing / scale, -g->most), g->most);
+      for (int p = 0; p < 2; p++) {
+        double angle = pose[p][motor], low = fmin(g->low[motor], angle);
+        pose[p][motor] = fmin(fmax(angle + by, low), fmax(g->high[motor], angle));
+      }
+    }
+  }
+}
+
 // behaviours/waiting.py `settled`
 static void settle(const double* angles, double waits, int nu, double* pose) {
   for (int i = 0; i < nu; i++) {
@@ -110,6 +141,7 @@ static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading
     settle(r->waiting, waits, s->nu, w->pose_b);
   }
   if (r->catch) spread(r->catch, now, it, w->pose_a), spread(r->catch, now, it, w->pose_b);
+  if (r->alighting) alight(r->alighting, d, r, now, it, w->pose_a, w->pose_b);
   for (int i = 0; i < 3; i++) r->task[0].target[i] = it->origin[i] + d->time * r->velocity[i];
   missing_turn(r, it, d->time, r->task[1].target);
 }
