@@ -154,3 +154,15 @@ def test_who_lands_as_flips_do_stands(momentum, speed):
     summary = summarise(scenario, buffer, breakdown, 1.0)
     assert summary["failure_reason"] == ""
     assert summary["stature_least"] < 0.9  # it takes up the fall
+
+
+@pytest.mark.parametrize("seed", range(2000, 2004))
+def test_the_head_is_upright_soon_after_a_landing(seed):
+    """From where the fall has thrown it; what hangs as an arm does takes four seconds."""
+    scenario = made(f"seed={seed}", "duration=3")
+    buffer, _ = in_memory(scenario)
+    mj, data = scenario.model.mj, mujoco.MjData(scenario.model.mj)
+    data.qpos[:] = buffer.arrays()["trajectory/qpos"][-1]
+    mujoco.mj_kinematics(mj, data)
+    up = data.xmat[mj.body("head").id].reshape(3, 3)[:, 2]
+    assert np.degrees(np.arccos(up[2])) < 10.0
