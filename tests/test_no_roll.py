@@ -26,7 +26,9 @@ def judged(*overrides):
 
 def test_spinning_in_the_air():
     """Nearly without gravity the start's spin goes on, and no stall is seen."""
-    summary = judged("physics.gravity=[0,0,-0.01]", "duration=6")
+    summary = judged(
+        "behaviour=forward_roll_1_on_head", "physics.gravity=[0,0,-0.01]", "duration=6"
+    )
     assert summary["revolutions"] > 3.0
     assert summary["longest_stall"] < 1.5
     assert summary["failure_reason"].startswith("turned in the air: 1.")
