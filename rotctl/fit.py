@@ -1,6 +1,7 @@
 """Parts of a config that are each valid, and whether they make a run together."""
 
 from collections.abc import Sequence
+from functools import cache
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain_settings import ChainSettings
@@ -11,6 +12,7 @@ from rotctl.errors import InputError
 from rotctl.listing import content, shipped_files
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import Calm
+from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.dive import WATCHED, DiveCriteria
@@ -30,6 +32,7 @@ def require_fit(config: Config, model: Model) -> None:
     """
     behaviour = config.behaviour
     _require_judged(behaviour, config.criteria, model)
+    _require_pulled(behaviour, config.excursion)
     if not isinstance(config.criteria, OrientationCriteria):
         _require_weight(behaviour, config.physics.gravity)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
@@ -51,6 +54,29 @@ def require_fit(config: Config, model: Model) -> None:
             f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
             "none: control goes on with the model that it knows"
         )
+
+
+def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:
+    """A pull that is told acts on something; what every measure has of it is not told."""
+    lacking: dict[str, str] = {}
+    if measured.measure in ("integral", "root"):
+        lacking["correction_time"] = f"measure={measured.measure} has no pull"
+    elif not behaviour.by_excursion:
+        lacking["correction_time"] = f"no task of behaviour={behaviour.name} turns or holds"
+    if measured.measure == "clock":
+        lacking["phase_time"] = "with measure=clock the phase goes by time"
+    for key, why in lacking.items():
+        told, usual = getattr(measured, key), _usual(key)
+        if told != usual:
+            raise InputError(
+                f"excursion.{key}={told:g}: acts on nothing, as {why}; leave it at {usual:g}"
+            )
+
+
+@cache
+def _usual(key: str) -> float:
+    """A pull's time that comes with rotctl [s]."""
+    return float(content(shipped_files("excursion")["oriented"])[key])
 
 
 def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:

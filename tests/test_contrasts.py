@@ -153,6 +153,34 @@ def test_what_no_task_looks_at_is_refused(behaviour, measure, why):
         scenario.build(load([f"behaviour={behaviour}", f"excursion={measure}"]))
 
 
+@pytest.mark.parametrize(
+    ("chosen", "message"),
+    [
+        (["behaviour=stand", "excursion.correction_time=0.5"],
+         "excursion.correction_time=0.5: acts on nothing, as no task of behaviour=stand turns or "
+         "holds; leave it at 0.37"),
+        (["behaviour=turn_over", "excursion=integral", "excursion.correction_time=0.5"],
+         "excursion.correction_time=0.5: acts on nothing, as measure=integral has no pull; leave "
+         "it at 0.37"),
+        (["excursion=root", "excursion.correction_time=0.5"],
+         "excursion.correction_time=0.5: acts on nothing, as measure=root has no pull; leave it "
+         "at 0.37"),
+        (["excursion=clock", "excursion.phase_time=1"],
+         "excursion.phase_time=1: acts on nothing, as with measure=clock the phase goes by time; "
+         "leave it at 3"),
+    ],
+)  # fmt: skip
+def test_a_pull_that_acts_on_nothing_is_refused(chosen, message):
+    with pytest.raises(InputError, match=re.escape(message)):
+        scenario.build(load(chosen))
+
+
+@pytest.mark.parametrize("behaviour", ["forward_roll_1", "turn_over", "land", "forward_roll_twice"])
+def test_a_pull_that_acts_is_not(behaviour):
+    """In a chain on those of its parts that are measured as the run is."""
+    scenario.build(load([f"behaviour={behaviour}", "excursion.correction_time=0.5"]))
+
+
 def test_the_integral_of_a_turn_is_another_run():
     turns = [
         in_memory(

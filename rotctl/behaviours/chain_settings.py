@@ -144,6 +144,11 @@ class ChainSettings:
         shared = [part.behaviour.kinds for part in self.parts if part.gains is None]
         return {name: kind for kinds in shared for name, kind in kinds.items()}
 
+    @property
+    def by_excursion(self) -> bool:
+        """Whether a part goes by the whole of AE as the run measures it."""
+        return any(part.behaviour.by_excursion for part in self.parts if part.excursion is None)
+
     def make(self, model: Model, control: ControllerSettings, measured: ExcursionSettings) -> Chain:
         """The behaviour of one run."""
         return Chain(self, model, control, measured)

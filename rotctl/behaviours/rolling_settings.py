@@ -138,6 +138,11 @@ class RollingSettings:
         """Kinds of the tasks of its finish by the names of their gains; its own are its names."""
         return {} if self.finish is None else kinds_of(self.finish.tasks, self.finish.stages)
 
+    @property
+    def by_excursion(self) -> bool:
+        """A roll goes by the whole of AE."""
+        return True
+
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
     ) -> Rolling | Finishing:

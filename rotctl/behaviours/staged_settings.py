@@ -88,6 +88,13 @@ class StagedSettings:
         """Kinds of its tasks by the names of their gains."""
         return kinds_of(self.tasks, self.stages)
 
+    @property
+    def by_excursion(self) -> bool:
+        """Whether a task goes by the whole of AE; the phase is measured in any case."""
+        every = [self.tasks, *(stage.tasks for stage in self.stages)]
+        spins = [task for tasks in every for task in tasks.values() if task.kind == "spin"]
+        return any(isinstance(task.aim, Hold | Turn) for task in spins)
+
     def make(
         self, model: Model, control: ControllerSettings, measured: ExcursionSettings
     ) -> Staged:
@@ -106,9 +113,7 @@ class StagedSettings:
             "clock": f"looks poses up by time, which {here} does not",
             "root": f"is about the velocity of a roll, which {here} has not",
         }
-        every = [self.tasks, *(stage.tasks for stage in self.stages)]
-        spins = [task for tasks in every for task in tasks.values() if task.kind == "spin"]
-        if not any(isinstance(task.aim, Hold | Turn) for task in spins):
+        if not self.by_excursion:
             lacking["integral"] = f"acts where a task turns or holds, and in {here} none does"
         if measure in lacking:
             raise InputError(f"excursion={measure}: {lacking[measure]}; choose excursion=oriented")
