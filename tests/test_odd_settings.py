@@ -45,6 +45,8 @@ def complaint(chosen, changes):
          f"behaviour.tasks.balance: no kind 'jump'; valid: {', '.join(KINDS)}"),
         (STAND, {"behaviour.tasks.pelvis.point": [0.1, 0.0, 0.0]},
          "behaviour.tasks.pelvis: a task of kind attitude has no point"),
+        (STAND, {"behaviour.tasks.limits.point": [0.036, 0.1, 0.0]},
+         "behaviour.tasks.limits: of the point of a task of kind limits the first acts alone"),
         (STAND, {"behaviour.tasks.pelvis.aim": {"law": "ground", "height": 0.1}},
          "behaviour.tasks.pelvis: the aim ground is for tasks of kind point, not attitude"),
         (STAND, {"behaviour.tasks.pelvis.body": "tail"},

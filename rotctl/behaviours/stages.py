@@ -52,6 +52,8 @@ class TaskSettings:
             )
         if self.point != (0.0, 0.0, 0.0) and self.kind not in ("point", "limits"):
             raise ValueError(f"a task of kind {self.kind} has no point")
+        if any(self.point[1:]) and self.kind == "limits":
+            raise ValueError("of the point of a task of kind limits the first acts alone")
 
 
 @validated(frozen=True, config=STRICT)
