@@ -14,13 +14,13 @@ MOST_PARTS = 20  # of a chain of behaviours
 def _sorted_pair(pair: tuple[float, float]) -> tuple[float, float]:
     if pair[0] > pair[1]:
         raise ValueError(f"the range [{pair[0]:g}, {pair[1]:g}] is empty: low must not exceed high")
-    return pair if pair[0] < pair[1] else (pair[0], pair[0])  # [0, -0] has no width
+    return pair
 
 
-# Strict: a whole number will do for a float, but "1.0" or true will not.
-Finite = Annotated[float, Strict(), AllowInfNan(False)]
+# Strict: a whole number will do for a float, but "1.0" or true will not. -0 is 0: it is the same
+# number, and would be another run.
+Finite = Annotated[float, Strict(), AllowInfNan(False), AfterValidator((0.0).__add__)]
 Positive = Annotated[float, Strict(), AllowInfNan(False), Field(gt=0)]
-# By abs, -0 is 0: it is the same number, and would be another run.
 NonNegative = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0), AfterValidator(abs)]
 Fraction = Annotated[NonNegative, Field(le=1)]
 Vector = tuple[Finite, Finite, Finite]
@@ -31,7 +31,7 @@ Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]
 def _narrowed(drawn: float | tuple[float, float]) -> float | tuple[float, float]:
     """A range without width as the number that it is: written otherwise it would be another run."""
     low, high = ends(drawn)
-    return drawn if low < high else low + 0.0  # -0 is 0
+    return drawn if low < high else low
 
 
 Drawn = Annotated[Finite | Range, AfterValidator(_narrowed)]

@@ -19,6 +19,8 @@ def test_the_same_config_is_the_same_run():
     assert re.fullmatch("[0-9a-f]{12}", run_id())
     assert run_id() == run_id("seed=0", "start=tucked") == run_id("duration=20")
     assert run_id() == run_id("plant.mass=-0.0")
+    zeros = ("behaviour.heading", "physics.gravity.0", "start.pitch.1")
+    assert {run_id(f"{key}=-0.0") for key in zeros} == {run_id()}
 
 
 @pytest.mark.parametrize(
