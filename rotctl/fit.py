@@ -116,9 +116,10 @@ def _require_judged(
             _require_judged(part.behaviour, own, model, f"{key}.parts.{number}")
     if isinstance(criteria, DiveCriteria):
         _require_watched(behaviour, criteria, key)
-    stands = getattr(criteria, "landing", getattr(criteria, "stand", criteria))
+    of = next((f".{part}" for part in ("landing", "stand") if hasattr(criteria, part)), "")
+    stands = getattr(criteria, of[1:]) if of else criteria
     for name in getattr(stands, "feet", ()):
-        body_id(model.mj, name, f"{key}.feet")
+        body_id(model.mj, name, f"{key}{of}.feet")
     for group in getattr(criteria, "order", ()):
         for name in group:
             body_id(model.mj, name, f"{key}.order")

@@ -74,7 +74,7 @@ def prepared(
     for name, wanted in every.items():
         said = f"{key if name in stage.tasks else place}.tasks.{name}"
         bodies = body_ids(model.mj, [wanted.body], f"{said}.body") if wanted.body else [0]
-        for body, slot in zip(bodies, task_names(model, name, wanted), strict=True):
+        for body, slot in zip(bodies, task_names(model, said, name, wanted), strict=True):
             if wanted.aim:
                 wanted.aim.check(model, f"{said}.aim")
                 filled.append((len(rows), wanted.kind, wanted.aim))
@@ -100,9 +100,9 @@ def prepared(
     )
 
 
-def task_names(model: Model, name: str, wanted: TaskSettings) -> list[str]:
-    """A task's names: one for each side where its body stands for both."""
-    both = wanted.body and len(body_ids(model.mj, [wanted.body], f"tasks.{name}.body")) == 2
+def task_names(model: Model, key: str, name: str, wanted: TaskSettings) -> list[str]:
+    """A task's names: one for each side where its body stands for both; it stands at a key."""
+    both = wanted.body and len(body_ids(model.mj, [wanted.body], f"{key}.body")) == 2
     return [name + side for side in SIDES] if both else [name]
 
 

@@ -89,7 +89,8 @@ class Staged:
         keyed = [(f"{place}.stages.{i}", stage) for i, stage in enumerate(self._stages)]
         for key, stage in keyed:
             for name, wanted in (settings.tasks | stage.tasks).items():
-                found.update(dict.fromkeys(task_names(model, name, wanted)))
+                said = f"{key if name in stage.tasks else place}.tasks.{name}"
+                found.update(dict.fromkeys(task_names(model, said, name, wanted)))
             if stage.until:
                 stage.until.check(model, f"{key}.until")
             if stage.otherwise:
