@@ -75,6 +75,8 @@ def complaint(chosen, changes):
          f"bodies: {BODIES}"),
         (["behaviour=forward_roll", "+finish=stand"], {"behaviour.finish.tasks.sole.body": "tail"},
          f"behaviour.finish.tasks.sole.body names the unknown body 'tail'; bodies: {BODIES}"),
+        (["behaviour=back_flip"], {"behaviour.stages.4.flight.shapes": {"tuck": {"hip_y": 1.0}}},
+         "behaviour.stages.4.flight.shapes: tuck is flown by the pose of that name, beside them"),
         (["behaviour=back_flip"], {"criteria.landing.feet": ["tail"]},
          f"criteria.landing.feet names the unknown body 'tail'; bodies: {BODIES}"),
         (["behaviour=forward_roll", "+finish=stand"], {"criteria.stand.feet": ["tail"]},
@@ -108,6 +110,14 @@ def complaint(chosen, changes):
 )  # fmt: skip
 def test_it_is_refused(chosen, changes, message):
     assert complaint(chosen, changes) == message
+
+
+def test_a_shape_that_is_not_flown_has_joints_too():
+    changes = {"behaviour.stages.4.flight.shapes.pike.tail": 1.0}
+    said = complaint(["behaviour=dive_forward"], changes)
+    assert said.startswith(
+        "behaviour.stages.4.flight.shapes.pike names the unknown joint 'tail'; valid: "
+    )
 
 
 @pytest.mark.parametrize(

@@ -80,9 +80,8 @@ class Flight:
         Raises:
             InputError: a joint, a body or a shape is not there.
         """
-        tightest = settings.tightest_pose(shape)
-        if tightest is None:
-            valid = instead(shape, (TUCK, *settings.shapes))
+        if shape not in (known := (TUCK, *settings.shapes)):
+            valid = instead(shape, known)
             raise InputError(f"behaviour.shape={shape}: no such shape; {valid}")
         self._settings, self._model, self._frame = settings, model, frame
         self._axis = frame.trunk_axis
@@ -106,7 +105,7 @@ class Flight:
             self._levelling = Levelling(level, model, self._shapes, settings.change, aside)
         opening = settings.opened_for(target)
         self.tucking = Tucking(
-            settings, model, self._shapes, self._axis, self._usual, tightest, opening, key, shape
+            settings, model, self._shapes, self._axis, self._usual, opening, key, shape
         )
 
     def _entry(self, entry: EntrySettings, key: str) -> Contact:

@@ -85,6 +85,8 @@ class FlightSettings:
     def __post_init__(self) -> None:
         if (self.entry is None) == (self.feet is None):
             raise ValueError("give either entry or feet, not both and not neither")
+        if TUCK in self.shapes:
+            raise ValueError(f"shapes: {TUCK} is flown by the pose of that name, beside them")
         for shape in self.levelling.shapes if self.levelling else ():
             if shape not in (known := (TUCK, *self.shapes)):
                 raise ValueError(f"levelling: no shape {shape!r}; {instead(shape, known)}")
@@ -97,7 +99,3 @@ class FlightSettings:
         if self.opening_for is None or turn <= self.opening_for:
             return self.opening
         return self.opening * self.opening_for / turn
-
-    def tightest_pose(self, shape: str) -> dict[str, Turn] | None:
-        """Of a shape, by joint name [rad]; None if there is no such shape."""
-        return self.tuck if shape == TUCK else self.shapes.get(shape)

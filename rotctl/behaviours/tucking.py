@@ -7,11 +7,11 @@ the body comes there and opens in the end.
 import numpy as np
 
 from rotctl.behaviours.easing import smooth
-from rotctl.behaviours.flight_settings import FlightSettings
+from rotctl.behaviours.flight_settings import TUCK, FlightSettings
 from rotctl.behaviours.landing import Contact
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes
-from rotctl.motion import Turn, make_pose
+from rotctl.motion import make_pose
 from rotctl.rotations import Array
 
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
@@ -30,7 +30,6 @@ class Tucking:
         shapes: Shapes,
         axis: Array,
         usual: Contact,
-        tightest: dict[str, Turn],
         opening: float,
         key: str,
         shape: str,
@@ -40,15 +39,18 @@ class Tucking:
         Args:
             axis: (3,) that it turns about, in the trunk's frame.
             usual: the landing that inertia is tabulated for.
-            tightest: pose of the shape, by joint name.
             opening: how long before the landing it opens [s].
             key: where the settings stand.
+            shape: that it flies in.
 
         Raises:
             InputError: a joint is not there.
         """
         self._settings, self._opening = settings, opening
-        self._tuck = make_pose(model, tightest, f"{key}.{shape}")
+        tucks = {TUCK: make_pose(model, settings.tuck, f"{key}.tuck")}
+        for name, pose in settings.shapes.items():
+            tucks[name] = make_pose(model, pose, f"{key}.shapes.{name}")
+        self._tuck = tucks[shape]
         self._stretch = make_pose(model, settings.stretch, f"{key}.stretch")
         self._midway: tuple[float, Array] | None = None
         if settings.midway:
