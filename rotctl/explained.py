@@ -14,8 +14,10 @@ from rotctl.choosing import package
 from rotctl.errors import InputError
 from rotctl.listing import choices
 from rotctl.overrides import is_choice
-from rotctl.plain import NOTHING, Way, dotted, keys_under, member, put, way
+from rotctl.plain import NOTHING, Way, dotted, find, keys_under, member, put, way
 from rotctl.schema import check
+
+PARTS = (("behaviour", "parts"), ("criteria", "parts"))  # of a chain
 
 
 def explain(error: Exception, overrides: list[Override], valid: dict[str, Any]) -> str:
@@ -57,6 +59,11 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
     if override.package:
         return unknown_key(f"{key}@{override.package}", "", list(valid))
     place, parts = valid, way(key)
+    if parts[:2] in PARTS and len(parts) > 3 and find(valid, parts[:3]) is not NOTHING:
+        return (
+            f"{clip(key)}: is inside a part of a chain; say it in the part's own text, as in "
+            """'behaviour.parts=[stand,"cartwheel behaviour.target_excursion=360"]'"""
+        )
     for depth, part in enumerate(parts):
         inner = member(place, part)
         if inner is NOTHING:

@@ -1,5 +1,6 @@
 """Behaviours one after the other: how a chain is written, when a part is over, how it is judged."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -490,3 +491,13 @@ def test_a_schedule_of_a_part_comes_in_the_run():
         "behaviour.parts: \"forward_roll 'behaviour.pace.schedule=[[9,0.5]]'\": "
         "behaviour.pace.schedule: what it tells from 9 s on never comes, the run is over at 9 s"
     )
+
+
+@pytest.mark.parametrize(
+    "key", ["behaviour.parts.2.behaviour.angular_velocity", "criteria.parts.0.lean"]
+)
+def test_nothing_is_set_inside_a_part(key):
+    """To write + before the key, as for others that are not there yet, would not do either."""
+    message = f"{key}: is inside a part of a chain; say it in the part's own text, as in "
+    with pytest.raises(InputError, match=re.escape(message)):
+        load(["behaviour=forward_roll_twice", f"{key}=0.6"])
