@@ -54,6 +54,12 @@ def test_a_log_holds_no_file_open(path):
         log["trajectory/qpos"]
 
 
+def test_a_log_that_somebody_else_here_holds_open_with_locks(path):
+    with h5py.File(path) as file:
+        length = len(file["trajectory/time"])
+        assert len(RunLog.open(path)["trajectory/time"]) == length
+
+
 def test_a_file_that_was_exchanged_under_the_log_is_refused(path):
     log = RunLog.open(path)
     write(path, buffer(steps=3))

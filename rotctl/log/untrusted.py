@@ -48,13 +48,23 @@ def opened(path: Path, *, linked: bool) -> Iterator[h5py.File]:
     if not h5py.is_hdf5(path):
         raise LogError(f"{path}: not an HDF5 file")
     try:
-        # Logs appear whole and never change, and many network file systems cannot lock.
-        with h5py.File(path, "r", locking=False) as file:
+        with _file(path) as file:
             yield file
     except LogError as error:
         raise LogError(f"{path}: {error}") from error
     except _DAMAGE as error:
         raise LogError(f"{path}: truncated or damaged HDF5 file") from error
+
+
+def _file(path: Path) -> h5py.File:
+    """Logs appear whole and never change, and many network file systems cannot lock.
+
+    What this process has open with locks, as h5py does by itself, opens in the same way alone.
+    """
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError:
+        return h5py.File(path, "r")
 
 
 def root_attributes(file: h5py.File) -> dict[str, bool | int | float | str]:
