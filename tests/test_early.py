@@ -106,7 +106,20 @@ def test_a_part_that_the_runs_end_cuts_says_so_in_the_runs_time():
         found = make(load([*parts, f"duration={duration}"])).summary["failure_reason"]
         assert found == said
     assert (
-        of_a_part("the run ends at 4.00 s, in the air", 6.5, True)
+        of_a_part("the run ends at 4.00 s, in the air", 2.5, 6.5, True)
         == "it ends at 6.50 s, in the air"
     )
-    assert of_a_part("leans by 30 deg at the end", 6.5, True) == "leans by 30 deg at the end"
+    assert of_a_part("leans by 30 deg at the end", 2.5, 6.5, True) == "leans by 30 deg at the end"
+
+
+@pytest.mark.parametrize(
+    ("reason", "of_the_run"),
+    [
+        ("stalled for 1.60 s from t = 0.00 s", "stalled for 1.60 s from t = 2.50 s"),
+        ("fell: head came down at 1.25 s", "fell: head came down at 3.75 s"),
+        ("told to halt at 3 s, and not still", "told to halt at 5.50 s, and not still"),
+        ("is 0.70 m high at the end", "is 0.70 m high at the end"),
+    ],
+)
+def test_a_part_s_reason_tells_the_time_of_the_run(reason, of_the_run):
+    assert of_a_part(reason, 2.5, 6.5, True) == of_the_run

@@ -1,6 +1,7 @@
 """A run that ends before it could do what it is asked: that is the reason, not what is missing."""
 
 import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from rotctl.metrics.judge import Criteria
 
 ENDS = "the run ends at"
+_WHEN = re.compile(r"(?<=\bt = )[\d.]+(?= s\b)|(?<=\bat )[\d.]+(?= s\b)")  # in a reason
 NOW, SLOW = 0.5, 0.1  # [s] before the end, [m/s] who is slower has come to rest
 TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
@@ -47,14 +49,14 @@ def too_short(
     return f"{ENDS} {lasted:.2f} s, {missing}" if missing else ""
 
 
-def of_a_part(reason: str, end: float, goes_on: bool) -> str:
+def of_a_part(reason: str, begin: float, end: float, goes_on: bool) -> str:
     """The reason of a chain's part in the run's time, which may go on after it.
 
     Args:
-        end: of the part in the run [s].
+        begin, end: of the part in the run [s].
     """
     if not reason.startswith(ENDS):
-        return reason
+        return _WHEN.sub(lambda when: f"{begin + float(when[0]):.2f}", reason)
     missing = reason.partition(" s, ")[2]
     return f"{'it ends at' if goes_on else ENDS} {end:.2f} s, {missing}"
 

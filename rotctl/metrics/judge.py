@@ -195,7 +195,7 @@ def _chained(
         first, end = part.rows.start, part.rows.stop
         wanted = (end - first) * period
         made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
-        reasons.append(early.of_a_part(made.reason, end * period, end < rows))
+        reasons.append(early.of_a_part(made.reason, first * period, end * period, end < rows))
     found = {
         "parts_succeeded": sum(not reason for reason in reasons),
         "parts_begun": len(parts),
