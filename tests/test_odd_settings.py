@@ -69,6 +69,10 @@ def complaint(chosen, changes):
          {"behaviour.stages.1.beyond": 0.5, "behaviour.stages.1.lead": 0.1},
          "behaviour.stages.1: beyond=0.5: the stage 'bow' must have poses and a lead, which is "
          "how far ahead they go"),
+        (STAND, {"behaviour.stages.0.lead": 1.0},
+         "behaviour.stages.0: lead=1: the stage 'stand' has no poses that vary over the phase"),
+        (["behaviour=back_flip"], {"behaviour.stages.3.lead": 0.5},
+         "behaviour.stages.3: lead=0.5: the stage 'launch' has no poses that vary over the phase"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
         (["behaviour=back_flip"], {"behaviour.stages.4.tasks.air_plane.body": "tail"},
          "behaviour.stages.4.tasks.air_plane.body names the unknown body 'tail'; "

@@ -130,6 +130,16 @@ class Stage:
                 f"beyond={self.beyond:g}: the stage {self.name!r} must have poses and a lead, "
                 "which is how far ahead they go"
             )
+        if self.lead and not (self.poses and _vary(self.poses)):
+            raise ValueError(
+                f"lead={self.lead:g}: the stage {self.name!r} has no poses that vary over the phase"
+            )
+
+
+def _vary(poses: Poses) -> bool:
+    """Whether key poses are others at other phases."""
+    angles = [*poses.a.values(), *(poses.b or {}).values()]
+    return any(isinstance(angle, tuple) and any(angle[1:]) for angle in angles)
 
 
 def kinds_of(tasks: Mapping[str, TaskSettings], stages: Iterable[Stage]) -> dict[str, str]:
