@@ -91,7 +91,10 @@ def test_no_joint_goes_further_than_told_or_out_of_its_range(model):
 
 
 def test_what_cannot_alight_is_refused():
-    with pytest.raises(InputError, match="lies on its side: no limb comes down beside it"):
+    with pytest.raises(
+        InputError,
+        match="lies on its side, and no limb comes down beside it: give behaviour.alighting=null",
+    ):
         load(["behaviour=sideways_roll", *ASKED])
     for limbs, said in {
         "{foot:[waist_y]}": "foot: waist_y is of no limb on either side",

@@ -43,7 +43,9 @@ def asked(made, state, now, name):
 
 @pytest.mark.parametrize("about", FACING)
 def test_root_control_sees_the_pelvis_alone(about):
-    made, state, now, turned = at_a_state(["excursion=root", f"behaviour.roll_about={about}"])
+    made, state, now, turned = at_a_state(
+        ["excursion=root", "behaviour.alighting=null", f"behaviour.roll_about={about}"]
+    )
     gains = made.config.controller.tasks["spin"]
     task = asked(made, state, now, "spin")
     found = KINDS["spin"].rows(task, made.model, state).wanted

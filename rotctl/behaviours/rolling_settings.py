@@ -90,7 +90,10 @@ class RollingSettings:
         if self.catch and self.roll_about == "head":
             raise ValueError("a roll about its head lies on its side, and has nothing to catch")
         if self.alighting and self.roll_about == "head":
-            raise ValueError("a roll about its head lies on its side: no limb comes down beside it")
+            raise ValueError(
+                "a roll about its head lies on its side, and no limb comes down beside it: give "
+                "behaviour.alighting=null"
+            )
         if self.oblique and self.roll_about == "head":
             raise ValueError(
                 "an oblique axis lies between left or right and the head: roll_about=head has none"
