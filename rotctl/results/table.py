@@ -12,8 +12,8 @@ from rotctl.results.keys import name_of, value_at
 from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
-# What is no metric, and what `rotctl.results.groups` and the report add.
-_TAKEN = (
+# What no metric is called: other columns, and what `rotctl.results.groups` and the report add.
+TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
     *("n", "succeeded", "success_rate", "success_low", "success_high", "no_result", "label"),
 )
@@ -53,7 +53,7 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
     if len(keys) > MOST:
         notes = [*notes, f"the configs differ in {len(keys)} keys; {MOST} of them are columns"]
     keys = [*[key for key in keys if key != "seed"][: MOST - 1], "seed"]
-    metrics = list(dict.fromkeys(k for run in runs for k in run.outcome if k not in _TAKEN))[:MOST]
+    metrics = list(dict.fromkeys(k for run in runs for k in run.outcome if k not in TAKEN))[:MOST]
     columns = _columns(keys, metrics)
     rows = []
     for run in runs:
@@ -78,7 +78,7 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
 def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
     """Config keys to columns: `config.<key>` where something that is measured is called so."""
     columns: dict[str, str] = {}
-    taken = {*metrics, *_TAKEN} - {"behaviour", "seed"}
+    taken = {*metrics, *TAKEN} - {"behaviour", "seed"}
     for key in keys:
         column = key
         while column in taken:

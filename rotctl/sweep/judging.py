@@ -4,7 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,12 +17,13 @@ from rotctl.metrics.expression import Expression
 from rotctl.overrides import assigned, single
 from rotctl.plain import NOTHING, Way, exchanged, way
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
-from rotctl.results.table import Table, tabulated
-from rotctl.schema import check
+from rotctl.results.table import TAKEN, Table, tabulated
+from rotctl.schema import Config, check
 from rotctl.summary import Summary, judged_again
 from rotctl.sweep.engines import Engine, Failure
 
 NOT_JUDGED = "not judged"
+BEFORE = "success_before"
 NO_LOG = "its log was not kept; rotctl sweep --keep all makes it again"
 
 
@@ -112,6 +113,24 @@ def criteria(overrides: Sequence[str], none: bool = False) -> Criteria:
     return Criteria(base, changes)
 
 
+def require_names(metrics: Sequence[Expression]) -> None:
+    """See that no metric is called as a key is, by which runs are grouped, or as their verdict.
+
+    Raises:
+        InputError: one is.
+    """
+    keys = [part.name for part in fields(Config)]
+    for metric in metrics:
+        if metric.name in keys:
+            raise InputError(f"metric {metric.name}: a key of the config has that name; rename it")
+        if metric.name in (*TAKEN, BEFORE):
+            raise InputError(_taken(metric))
+
+
+def _taken(metric: Expression) -> str:
+    return f"metric {metric.name}: there is a column of that name already"
+
+
 def answer(question: Question) -> Answer:
     """The summary row of a logged run by its new criteria, with its metrics.
 
@@ -124,7 +143,7 @@ def answer(question: Question) -> Answer:
     complaints = []
     for metric in question.metrics:
         if metric.name in summary:
-            raise InputError(f"metric {metric.name}: there is a column of that name already")
+            raise InputError(_taken(metric))
         try:
             value = evaluate(metric, log)
         except InputError as error:
@@ -149,8 +168,9 @@ def judge(
 
     Raises:
         InputError: there are none, none has criteria with such keys, or a metric has no value in
-            any.
+            any, or the name of something else.
     """
+    require_names(metrics)
     runs, notes = stored_runs(folder)
     asked: list[tuple[StoredRun, Question]] = []
     found: dict[str, StoredRun] = {run.run_id: run for run in runs}
@@ -192,7 +212,7 @@ def judge(
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
     notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]
     table = tabulated(list(found.values()), notes)
-    table.rows["success_before"] = table.rows["run_id"].map(before)
+    table.rows[BEFORE] = table.rows["run_id"].map(before)
     return Judged(
         table,
         lost=sum(before[name] and not success for name, success in after.items()),
