@@ -118,6 +118,15 @@ def test_runs_that_should_not_be_pooled_are_told():
     assert judge(claim(gain=1), table, ["gain", "seed"]).remarks == ()
 
 
+def test_runs_that_are_the_same_to_the_bit_make_no_interval_narrower():
+    table = runs([True] * 20, trajectory=["a"] * 19 + ["b"])
+    found = judge(claim(), table, ["seed"])
+    assert found.remarks == ("20 runs, 2 distinct",)
+    assert (found.measured.runs, found.measured.distinct) == (20, 2)
+    assert found.measured.low == pytest.approx(0.3424, abs=5e-5)  # Wilson's of 2 of 2
+    assert judge(claim(), runs([True] * 20, trajectory=[""] * 20), ["seed"]).remarks == ()
+
+
 def test_a_key_that_is_also_measured_is_the_one_asked_for():
     table = runs([True, False], duration=[5.0, 5.0], **{"config.duration": [5.0, 20.0]})
     assert judge(claim(duration=5.0), table, []).measured.runs == 1

@@ -25,6 +25,8 @@ from rotctl.report.site.panels import drawn
 from rotctl.report.site.rows import from_worst, rows
 from rotctl.report.site.study import studies, warnings
 from rotctl.report.site.words import Names, kind, number, ranges
+from rotctl.results import index
+from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.sweeps import sweeps
 
@@ -446,6 +448,20 @@ def test_a_row_over_several_settings_says_so_and_of_which_its_pictures_are(tmp_p
     text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
     assert "taken together: config.duration 0.2, 0.3, 0.4." in text
     assert f"Median run: seed 0 run {row.median.run_id}, config.duration 0.3" in text
+
+
+def test_runs_that_are_the_same_to_the_bit_are_told(sweep, tmp_path):
+    listed = index.read(sweep)
+    (sweep / index.INDEX_NAME).unlink()
+    writer = Writer(sweep, index.Index())
+    for row in listed.rows.values():
+        writer.add(row._replace(trajectory="0" * 64))
+    writer.close()
+    report(sweep, tmp_path / "site")
+    text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
+    assert "100 % [21, 100] of 3 runs 1 distinct" in text
+    assert "3 runs, 1 distinct" in text
+    assert "6 runs, 2 distinct" in Page(tmp_path / "site" / "sweeps" / "table.html").text
 
 
 @pytest.mark.parametrize(

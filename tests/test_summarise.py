@@ -16,6 +16,7 @@ from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
+from rotctl.results import index
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
@@ -77,6 +78,13 @@ def test_wilson_solves_the_score_equation():
         for bound in wilson(succeeded, n):
             score = (succeeded / n - bound) / np.sqrt(bound * (1 - bound) / n)
             assert abs(score) == pytest.approx(z)
+
+
+def test_runs_that_are_the_same_make_no_interval_narrower():
+    assert wilson(10, 10, 10) == wilson(10, 10)
+    assert wilson(10, 10, 1) == wilson(1, 1)
+    low, high = wilson(99, 100, 2)
+    assert low < wilson(1, 2)[1] < 0.99 < high
 
 
 def test_wilson_of_nothing_says_nothing():
@@ -153,6 +161,31 @@ def test_one_key_stands_in_the_table_and_what_is_the_same_below_it():
     assert found.metrics == ["top"]
     assert markdown(found).splitlines()[0] == "| behaviour | n | success [95 %]  |"
     assert markdown(found).endswith("The same in all runs: plant varied, top 1.")
+
+
+def test_runs_that_are_the_same_to_the_bit_are_told_and_count_once():
+    """Seeds of a start of one state draw nothing; of a log without a row nobody knows."""
+    configs = [{"behaviour": {"name": "roll"}, "seed": seed} for seed in range(6)]
+    digests = ["a", "a", "a", "b", "", ""]
+    made_of = [
+        StoredRun(f"{i}", DONE, outcome={"success": True}, config=config, trajectory=digest)
+        for i, (config, digest) in enumerate(zip(configs, digests, strict=True))
+    ]
+    found = grouped(tabulated(made_of, []))
+    (row,) = found.rows.to_dict("records")
+    assert (row["n"], row["distinct"]) == (6, 4)
+    assert (row["success_low"], row["success_high"]) == wilson(4, 4)
+    assert found.notes[0].startswith("6 runs, 4 distinct: ")
+    assert markdown(found).splitlines()[0] == "| behaviour | n | distinct | success [95 %]  |"
+    apart = grouped(tabulated(made_of[2:], []))
+    assert apart.notes == []
+    assert "distinct" not in markdown(apart)
+
+
+def test_rows_of_a_sweep_tell_what_was_simulated(made):
+    digests = {row.run_id: row.trajectory for row in index.read(made).rows.values()}
+    rows = table(made).rows
+    assert dict(zip(rows["run_id"], rows["trajectory"], strict=True)) == digests
 
 
 def test_quartiles_are_of_the_values_that_are_there():

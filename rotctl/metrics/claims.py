@@ -64,12 +64,14 @@ class Measured:
         low: Wilson's 95 % interval of a rate, quartiles of the rest.
         high: see `low`.
         runs: how many it comes from.
+        distinct: of a rate how many of them are no other one to the bit, as its interval has it.
     """
 
     value: float | None = None
     low: float | None = None
     high: float | None = None
     runs: int = 0
+    distinct: int = 0
 
 
 @dataclass(frozen=True)
@@ -128,7 +130,10 @@ def measured(done: "pd.DataFrame", metric: str, quantile: float = 0.5) -> Measur
     """A metric over runs with results; values that are no finite numbers are left out."""
     if metric == SUCCESS_RATE:
         n, succeeded = len(done), int(done["success"].astype(bool).sum())
-        return Measured(succeeded / n, *wilson(succeeded, n), n) if n else Measured()
+        if not n:
+            return Measured()
+        apart = simulated(done).nunique()
+        return Measured(succeeded / n, *wilson(succeeded, n, apart), n, apart)
     values = [
         float(value)
         for value in done.get(metric, [])
@@ -140,6 +145,15 @@ def measured(done: "pd.DataFrame", metric: str, quantile: float = 0.5) -> Measur
 
     low, value, high = np.quantile(values, [0.25, quantile, 0.75]).tolist()
     return Measured(value, low, high, len(values))
+
+
+def simulated(runs: "pd.DataFrame") -> "pd.Series[Any]":
+    """What of runs is the same if they are to the bit, as where seeds draw nothing.
+
+    A run of which that is not known is taken for one of its own.
+    """
+    own = runs.index.to_series()
+    return runs["trajectory"].where(runs["trajectory"] != "", own) if "trajectory" in runs else own
 
 
 def in_which(runs: "pd.DataFrame", keys: Sequence[str], where: Mapping[str, Any]) -> list[str]:
@@ -187,5 +201,7 @@ def _mixed(claim: Claim, done: "pd.DataFrame", keys: Sequence[str]) -> list[str]
     """In what the runs differ that should be alike."""
     differing = in_which(done, keys, claim.where)
     remarks = [f"over runs that differ in {', '.join(differing)}"] if differing else []
+    apart = simulated(done).nunique()
+    remarks += [f"{len(done)} runs, {apart} distinct"] if apart < len(done) else []
     codes = done["code"].nunique() if "code" in done else 1
     return remarks + ([f"over runs of {codes} versions of the code"] if codes > 1 else [])

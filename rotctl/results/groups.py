@@ -14,6 +14,7 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.metrics import appearance, pace, peaks, rolling
+from rotctl.metrics.claims import simulated
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
@@ -35,7 +36,7 @@ class Groups:
 
     Attributes:
         rows: the keys, `n`, `succeeded`, `success_rate`, `success_low`, `success_high`,
-            `no_result`, and `_q25`, `_median`, `_q75` of every metric.
+            `distinct`, `no_result`, and `_q25`, `_median`, `_q75` of every metric.
         keys: the columns that name a group.
         metrics: those that were measured and are no words, such as the kind of the criteria.
         notes: what a reader should know, one line each.
@@ -71,10 +72,16 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         if not mixed and "code" not in keys:
             keys.append("code")
     metrics = [metric for metric in table.metrics if not _words(table.rows[metric])]
-    rows = [
+    rows: list[dict[str, Any]] = [
         dict(zip(keys, name, strict=True)) | measured
         for name, measured in _measured(table, keys, metrics)
     ]
+    n, apart = sum(row["n"] for row in rows), sum(row["distinct"] for row in rows)
+    if apart < n:
+        notes.append(
+            f"{n} runs, {apart} distinct: the others are the same to the bit, and intervals count "
+            "them once; seeds draw nothing there, of a recorded start they do with start.scatter"
+        )
     return Groups(pd.DataFrame(rows), keys, metrics, notes)
 
 
@@ -92,16 +99,19 @@ def _measured(
     success = table.rows["success"].eq(True).to_numpy()  # may be missing
     numbers = [pd.to_numeric(table.rows[metric], errors="coerce") for metric in metrics]
     values = np.array([column.to_numpy(dtype=float) for column in numbers]).T
+    same, _ = pd.factorize(simulated(table.rows))
     for name, runs in _in_order(table.rows, keys):
         with_result = runs[done[runs]]
         n, succeeded = len(with_result), int(success[with_result].sum())
-        low, high = wilson(succeeded, n)
+        apart = len(np.unique(same[with_result]))
+        low, high = wilson(succeeded, n, apart)
         row: dict[str, Any] = {
             "n": n,
             "succeeded": succeeded,
             "success_rate": succeeded / n if n else None,
             "success_low": low,
             "success_high": high,
+            "distinct": apart,
             "no_result": len(runs) - n,
         }
         if metrics:
@@ -142,6 +152,7 @@ def markdown(groups: Groups) -> str:
     Keys but the first, and metrics, with one value throughout are told below it, to keep it narrow.
     """
     missing = bool(groups.rows["no_result"].any())
+    repeated = bool((groups.rows["distinct"] < groups.rows["n"]).any())
     rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
     metrics = [metric for metric in groups.metrics if metric not in IN_FILES_ONLY]
     spreads = {metric: [_spread(row, metric) for row in rows] for metric in metrics}
@@ -151,13 +162,14 @@ def markdown(groups: Groups) -> str:
     named = {key: [_text(row[key], "g") for row in rows] for key in groups.keys}
     alike = {key: named[key][0] for key in groups.keys[1:] if len(set(named[key])) == 1}
     keys = [key for key in groups.keys if key not in alike]
-    lines = [[*keys, "n", *(["no result"] if missing else []), "success [95 %]", *varying]]
+    counts = {"n": "n"} | ({"distinct": "distinct"} if repeated else {})
+    counts |= {"no_result": "no result"} if missing else {}
+    lines = [[*keys, *counts.values(), "success [95 %]", *varying]]
     for i, row in enumerate(rows):
         lines.append(
             [
                 *(named[key][i] for key in keys),
-                str(row["n"]),
-                *([str(row["no_result"])] if missing else []),
+                *(str(row[count]) for count in counts),
                 _rate(row),
                 *(spreads[metric][i] for metric in varying),
             ]

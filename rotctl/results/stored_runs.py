@@ -34,6 +34,7 @@ class StoredRun:
         log: its log, relative to the folder; empty if it was not kept.
         config: its config; empty if there is no result.
         values: what the sweep says of its config, if a sweep made it.
+        trajectory: SHA-256 of what was simulated; empty where no index has it.
         origin: the log's `machine`, `versions`, `git_commit`, `git_dirty` and `wall_time`.
     """
 
@@ -45,6 +46,7 @@ class StoredRun:
     log: str = ""
     config: Mapping[str, Any] = field(default_factory=dict)
     values: Mapping[str, Any] = field(default_factory=dict)
+    trajectory: str = ""
     origin: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -109,6 +111,7 @@ def _indexed(row: Row, log: str) -> StoredRun:
         code=code_of(row.origin),
         log=log,
         config=row.config,
+        trajectory=row.trajectory,
         origin={**row.origin, "wall_time": row.wall_time},
     )
 

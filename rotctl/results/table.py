@@ -15,7 +15,8 @@ MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in 
 # What no metric is called: other columns, and what `rotctl.results.groups` and the report add.
 TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
-    *("n", "succeeded", "success_rate", "success_low", "success_high", "no_result", "label"),
+    *("n", "succeeded", "success_rate", "success_low", "success_high", "distinct", "no_result"),
+    *("trajectory", "label"),
 )
 
 
@@ -24,7 +25,7 @@ class Table:
     """Runs as rows.
 
     Attributes:
-        rows: `run_id`, `status`, the keys, the summary, `code` and `log`.
+        rows: `run_id`, `status`, the keys, the summary, `code`, `log` and `trajectory`.
         keys: the columns that are config keys: what was overridden, and what differs.
         metrics: the columns that were measured.
         notes: what a reader should know, one line each.
@@ -69,6 +70,7 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
                 **{name: run.outcome.get(name) for name in metrics},
                 "code": run.code,
                 "log": run.log,
+                "trajectory": run.trajectory,
             }
         )
     rows.sort(key=lambda row: [_order(row[name]) for name in [*columns.values(), "run_id"]])
