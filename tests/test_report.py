@@ -17,6 +17,7 @@ from logs import changed
 from rotctl.cli import main
 from rotctl.errors import InputError
 from rotctl.log import RunLog
+from rotctl.metrics.claims import Claim, judge
 from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
 from rotctl.report.site.charts import charts
@@ -24,7 +25,7 @@ from rotctl.report.site.grid import grid
 from rotctl.report.site.panels import drawn
 from rotctl.report.site.rows import from_worst, rows
 from rotctl.report.site.study import studies, warnings
-from rotctl.report.site.words import Names, kind, number, ranges
+from rotctl.report.site.words import Names, kind, number, outcome, ranges
 from rotctl.results import index
 from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry, read, write
@@ -516,6 +517,22 @@ def test_claims_that_nobody_could_test_are_named_with_the_reason(sweep, tmp_path
 )
 def test_reasons_without_their_numbers(reason, expected):
     assert kind(reason) == expected
+
+
+@pytest.mark.parametrize(
+    ("quantile", "values", "expected"),
+    [
+        (0.5, [1.0, 2.0, 3.0, 4.0, 5.0], "3 [2, 4] s"),
+        (0.9, [1.0, 2.0, 3.0, 4.0, 5.0], "4.6 s, quartiles 2 and 4"),
+        (0.9, [1.0, 1.0, 1.0], "1 s"),
+        (0.9, [1.0, 1.0, 1.0, 1.0, 3.0], "2.2 s, quartiles 1 and 1"),
+        (0.9, [None], "\u2013"),
+    ],
+)
+def test_a_quantile_has_no_brackets_that_it_does_not_lie_in(quantile, values, expected):
+    claim = Claim("c", "longest_stall", 1.0, 0.0, "ours", quantile=quantile)
+    runs = pd.DataFrame({"success": [True] * len(values), "longest_stall": values})
+    assert outcome(judge(claim, runs, [])) == expected
 
 
 @pytest.mark.parametrize(

@@ -53,10 +53,8 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    helpers: dict[str, Callable[..., Any]] = {
-        name: getattr(words, name)
-        for name in ("quantity", "claimed", "number", "with_unit", "spread", "expectation", "count")
-    }
+    names = ("quantity", "claimed", "number", "with_unit", "outcome", "expectation", "count")
+    helpers: dict[str, Callable[..., Any]] = {name: getattr(words, name) for name in names}
     made.globals.update(helpers, looks=LOOKS, success_rate=SUCCESS_RATE)
     return made
 

@@ -21,7 +21,7 @@ from rotctl.report.site.study import (
     tally,
     warnings,
 )
-from rotctl.report.site.words import claimed, expectation, spread, with_unit
+from rotctl.report.site.words import claimed, expectation, outcome
 from rotctl.report.title import plain
 
 COLUMNS = (
@@ -83,12 +83,7 @@ def _case(suite: Xml.Element, line: Line) -> None:
 def _sentence(line: Line) -> str:
     judged, claim = line.judged, line.judged.claim
     said = f"{judged.verdict}: {claimed(claim)} {expectation(claim)} expected"
-    return f"{said}, {_value(line)} measured over {judged.measured.runs} runs"
-
-
-def _value(line: Line) -> str:
-    metric = line.judged.claim.metric
-    return with_unit(spread(line.judged.measured, metric), metric)
+    return f"{said}, {outcome(judged)} measured over {judged.measured.runs} runs"
 
 
 def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
@@ -110,10 +105,11 @@ def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
 def _table(found: Sequence[Line]) -> list[str]:
     rows = [
         (line.judged.claim.id, claimed(line.judged.claim), expectation(line.judged.claim))
-        + (_value(line), str(line.judged.measured.runs), line.judged.verdict)
+        + (outcome(line.judged), str(line.judged.measured.runs), line.judged.verdict)
         for line in found
     ]
-    head = ["| claim | quantity | expected | measured | runs | verdict |", "|" + " --- |" * 6]
+    measured = "measured \\[95 % of a rate, else quartiles\\]"
+    head = [f"| claim | quantity | expected | {measured} | runs | verdict |", "|" + " --- |" * 6]
     return head + ["| " + " | ".join(map(_escaped, row)) + " |" for row in rows]
 
 

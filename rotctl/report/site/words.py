@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rotctl.metrics import appearance, pace
-from rotctl.metrics.claims import SUCCESS_RATE, Claim, Measured
+from rotctl.metrics.claims import SUCCESS_RATE, Claim, Judged, Measured
 from rotctl.metrics.judge import COLUMNS
 from rotctl.report.title import plain
 
@@ -66,6 +66,19 @@ def spread(found: Measured, metric: str) -> str:
         return NOTHING
     middle, low, high = (number(v, metric) for v in (found.value, found.low, found.high))
     return middle if low == middle == high else f"{middle} [{low}, {high}]"
+
+
+def outcome(judged: Judged) -> str:
+    """What a claim's runs had: a rate with its interval, a median with its quartiles.
+
+    Of another quantile these are beside it, as it need not lie between them.
+    """
+    claim, found = judged.claim, judged.measured
+    alike = found.value == found.low == found.high
+    if claim.quantile == 0.5 or alike:
+        return with_unit(spread(found, claim.metric), claim.metric)
+    value, low, high = (number(v, claim.metric) for v in (found.value, found.low, found.high))
+    return f"{with_unit(value, claim.metric)}, quartiles {low} and {high}"
 
 
 def expectation(claim: Claim) -> str:
