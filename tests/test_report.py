@@ -156,6 +156,13 @@ def test_rows_show_what_was_commanded_and_reached(site):
     assert "1 claim, not tested: no such run in the sweep." in text
 
 
+def test_the_whole_of_a_machine_is_told(made, site):
+    log = RunLog.open(sorted(made.glob("table/*/run.h5"))[0])
+    machine = json.loads(log.attributes["machine"])
+    text = Page(site / "index.html").text
+    assert all(f"{key} {value}" in text for key, value in machine.items())
+
+
 def test_replays_share_one_script(site):
     for path in site.glob("replays/*.html"):
         html = path.read_text(encoding="utf-8")

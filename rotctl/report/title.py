@@ -57,6 +57,6 @@ def verdict(outcome: dict[str, object]) -> tuple[bool | None, str]:
     return None, "outcome unknown"
 
 
-def plain(value: object) -> str:
-    """A stranger's text on one printable line."""
-    return "".join(c if c.isprintable() else " " for c in f"{value!s:.{LONGEST}}")
+def plain(value: object, longest: int = LONGEST) -> str:
+    """A stranger's text on one printable line of so many characters at most."""
+    return "".join(c if c.isprintable() else " " for c in f"{value!s:.{longest}}")

@@ -14,6 +14,7 @@ from rotctl.results.configs import config_hash
 from rotctl.results.stored_runs import DONE
 from rotctl.results.sweeps import Sweep
 
+LONGEST = 1000  # characters: the end of a machine, its libm and BLAS, is what bits may hang on
 MOST = 8  # different values of a thing that are listed
 
 
@@ -59,7 +60,7 @@ def _quartiles(found: Sequence[float]) -> str:
 
 def _counted(found: Iterable[str]) -> list[str]:
     ordered = sorted(Counter(found).items(), key=lambda item: (-item[1], item[0]))
-    lines = [f"{plain(text)} ({count(n, 'run')})" for text, n in ordered[:MOST]]
+    lines = [f"{plain(text, LONGEST)} ({count(n, 'run')})" for text, n in ordered[:MOST]]
     return lines + ([f"and {len(ordered) - MOST} more"] if len(ordered) > MOST else [])
 
 

@@ -28,6 +28,7 @@ COLUMNS = (
     *("sweep", "experiment", "id", "verdict", "metric", "comparison", "expected", "tolerance"),
     *("value", "low", "high", "runs", "missing", "where", "source", "remarks"),
 )
+LONGEST = 400  # characters of a message
 
 
 def claims_csv(found: Sequence[Line]) -> str:
@@ -77,7 +78,7 @@ def _case(suite: Xml.Element, line: Line) -> None:
     )
     if judged.verdict != REPRODUCED:
         kind = "skipped" if judged.verdict == NOT_TESTED else "failure"
-        Xml.SubElement(case, kind, message=plain(_sentence(line)), type=judged.verdict)
+        Xml.SubElement(case, kind, message=plain(_sentence(line), LONGEST), type=judged.verdict)
 
 
 def _sentence(line: Line) -> str:
