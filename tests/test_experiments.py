@@ -69,7 +69,9 @@ claims:
 @pytest.mark.parametrize(
     ("metric", "where", "further", "message"),
     [
-        ("lean_mots", "", [], "metric: no 'lean_mots' is measured; did you mean lean_most? "),
+        ("lean_mots", "", [],
+         "metric: no 'lean_mots' is measured, and one of your own has no claims: rotctl judge DIR "
+         "--metric tells it; did you mean lean_most? valid: "),
         ("lean_most", "behaviour: stnad", [],
          "where: no run of its grid has behaviour stnad; did you mean stand? valid: "
          "stand, stand_step"),

@@ -37,7 +37,8 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
         if claim.metric not in METRICS:
             raise InputError(
                 f"{experiments.PREFIX}{name}: claim {claim.id}: metric: no {claim.metric!r} is "
-                f"measured; {instead(claim.metric, METRICS)}"
+                "measured, and one of your own has no claims: rotctl judge DIR --metric tells it; "
+                f"{instead(claim.metric, METRICS)}"
             )
     here: list[Values] = [(run.values, run.config) for run in runs]
     absent = [claim for claim in claims if not _any(claim.where, here)]
