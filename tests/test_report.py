@@ -416,6 +416,25 @@ def test_a_sweep_of_ones_own_reproduces_no_paper(tmp_path):
     assert "What these runs did" in Page(tmp_path / "site" / "index.html").text
 
 
+@pytest.mark.parametrize(
+    ("whole", "one", "asked"),
+    [
+        ("ours", "ours, after a talk", "Do the claims hold?"),
+        ("ours", "[Brown2013] Table 1", "Does it reproduce the paper?"),
+        ("[AlBorno2014]: dives", "ours", "Does it reproduce the paper?"),
+    ],
+)
+def test_claims_of_ones_own_are_no_papers(sweep, tmp_path, whole, one, asked):
+    text = EXPERIMENT.replace('"[Brown2013] Table 1"', f'"{whole}"')
+    text = text.replace("source: paper", f'source: "{one}"')
+    (sweep / "experiment-test.yaml").write_text(text)
+    report(sweep, tmp_path / "site")
+    assert (tmp_path / "site" / "summary.md").read_text().startswith(f"# {asked}\n\n**{ANSWER}**")
+    page = Page(tmp_path / "site" / "index.html").text
+    assert asked in page
+    assert ("the paper" in page) == ("paper" in asked)
+
+
 def test_a_move_that_does_not_roll_has_its_own_metrics_on_the_page_of_its_sweep(tmp_path):
     pushes = ("disturbance=push", "disturbance.impulse=10,20,30", "disturbance.time=[0.1,0.1]")
     swept(tmp_path / "own", "behaviour=stand", *pushes, "duration=0.4", "seed=0")

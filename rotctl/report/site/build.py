@@ -19,6 +19,7 @@ from rotctl.report.site.study import (
     answer,
     by_quantity,
     lines,
+    of_a_paper,
     question,
     studies,
     tally,
@@ -80,7 +81,8 @@ def report(
         "summary.md": encoded(texts.summary_md(every, notes)),
         "index.html": pages.page(
             "index.html",
-            question=question(claims),
+            question=question(every),
+            paper=of_a_paper(every),
             answer=answer(claims),
             tally=tally(claims),
             total=len(claims),

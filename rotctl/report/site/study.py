@@ -1,5 +1,6 @@
 """A sweep and one experiment that it was made for: the rows, and the claims line by line."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ from rotctl.results.sweeps import Sweep
 
 _IN_A_WORD = {REPRODUCED: "Yes", PARTLY: "In part", NOT_REPRODUCED: "No", NOT_TESTED: "Unknown"}
 MOST_NAMED = 12  # claims on a line
+_CITED = re.compile(r"\[[A-Za-z]+\d{4}[a-z]?\]")
 FEW = 20  # runs; below that a success rate says little
 
 
@@ -94,9 +96,19 @@ def answer(found: Sequence[Line]) -> str:
     return f"{word}: {tally(found)[REPRODUCED]} of {len(found)} claims reproduced."
 
 
-def question(found: Sequence[Line]) -> str:
+def question(found: Sequence[Study]) -> str:
     """What `answer` answers: without claims nothing was asked."""
-    return "Does it reproduce the paper?" if found else "What these runs did"
+    if not lines(found):
+        return "What these runs did"
+    return "Does it reproduce the paper?" if of_a_paper(found) else "Do the claims hold?"
+
+
+def of_a_paper(found: Iterable[Study]) -> bool:
+    """Whether an experiment, or a claim of one, has its source in a paper, as `[Brown2013]`."""
+    judged = [study.experiment for study in found if study.experiment]
+    sources = [each.source for each in judged]
+    sources += [claim.source for each in judged for claim in each.claims]
+    return any(_CITED.search(source) for source in sources)
 
 
 def by_quantity(found: Sequence[Line]) -> list[str]:

@@ -90,7 +90,7 @@ def _sentence(line: Line) -> str:
 def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
     """The answer, and a table of the claims, for the summary of a CI job."""
     judged = lines(found)
-    parts = [f"# {question(judged)}", f"**{answer(judged)}**"]
+    parts = [f"# {question(found)}", f"**{answer(judged)}**"]
     if judged:
         parts.append("\n".join(f"- {_escaped(text)}" for text in by_quantity(judged)))
     parts += [f"> {_escaped(note)}" for note in notes]
