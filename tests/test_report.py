@@ -416,6 +416,14 @@ def test_a_sweep_of_ones_own_reproduces_no_paper(tmp_path):
     assert "What these runs did" in Page(tmp_path / "site" / "index.html").text
 
 
+def test_runs_of_one_seed_are_not_told_as_so_many_starts(sweep, tmp_path):
+    whole = EXPERIMENT.replace(", where: {behaviour: forward_roll_1}", "")
+    (sweep / "experiment-test.yaml").write_text(whole.replace(", where: {behaviour: decline}", ""))
+    (found,), _ = sweeps(sweep)
+    (study,) = studies(found)
+    assert warnings(study)[0] == "Only 6 runs from 3 seeds a row, so that the intervals are wide."
+
+
 @pytest.mark.parametrize(
     ("whole", "one", "asked"),
     [

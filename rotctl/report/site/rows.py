@@ -66,6 +66,7 @@ class Row:
         metrics: `success_rate` and those of `SHOWN` -> what was measured.
         looks: those of `LOOKS` that were measured.
         worst: of the run with the longest stall [s].
+        seeds: how many different ones its runs with a result have.
         missing: runs without a result.
         failures: kind of failure -> how many, most first.
         median: the run in the middle from worst to best, see `BETTER`; None without results.
@@ -83,6 +84,7 @@ class Row:
     metrics: Mapping[str, Measured]
     looks: Mapping[str, Measured]
     worst: float | None
+    seeds: int
     missing: int
     failures: tuple[tuple[str, int], ...]
     median: StoredRun | None
@@ -133,6 +135,7 @@ def _row(
         metrics={name: measured(done, name) for name in (SUCCESS_RATE, *SHOWN)},
         looks={name: found for name, found in looks.items() if found.runs},
         worst=max(stalls, default=None),
+        seeds=done["seed"].nunique(),
         missing=len(about) - len(done),
         failures=tuple(sorted(reasons.items(), key=lambda item: (-item[1], item[0]))),
         median=median,

@@ -142,14 +142,16 @@ def warnings(study: Study) -> list[str]:
 
 def _few(study: Study) -> list[str]:
     rates = [
-        judged.measured.runs
+        (judged.measured.runs, row.seeds)
         for row in study.rows
         for judged in row.claims
         if judged.claim.metric == SUCCESS_RATE and judged.measured.runs
     ]
-    if not rates or not study.experiment or min(rates) >= FEW:
+    fewest, starts = min(rates, default=(FEW, 0))
+    if fewest >= FEW or not study.experiment:
         return []
-    said = f"Only {min(rates)} starts a row, so that the intervals are wide."
+    counted = f"{fewest} starts" if starts == fewest else f"{fewest} runs from {starts} seeds"
+    said = f"Only {counted} a row, so that the intervals are wide."
     seeds = study.experiment.seeds
     whole = _no_more(seeds, study.sweep.table.rows["seed"].nunique())
     return [said if whole else f"{said} The whole experiment has seed={seeds}."]
