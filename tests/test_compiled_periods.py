@@ -117,6 +117,16 @@ def test_c_catches_as_python_does(both, behaviour, direction):
     )
 
 
+@pytest.mark.parametrize("heading", [0, -70])
+def test_c_brings_limbs_aside_as_python_does(both, heading):
+    """A joint that is told for two limbs, or twice for one, turns for each."""
+    both(
+        *("behaviour.alighting.limbs={foot:[hip_x,hip_z],forearm:[shoulder_x,shoulder_x]}",),
+        *("+behaviour.alighting.limbs.shin=[hip_x]", f"behaviour.heading={heading}"),
+        *("disturbance=push", "disturbance.time=0.3", "disturbance.direction=90", "duration=1"),
+    )
+
+
 def test_c_knows_what_a_roll_can_be_asked():
     """Whoever adds a setting gives it to C, or has `Rolling.compiled` refuse it."""
     assert {field.name for field in fields(PaceSettings)} == {

@@ -110,7 +110,7 @@ class Alighting:
         """A pose (nu,) with those motors turned, within their joints' ranges."""
         moved = pose.copy()
         for motor, by in turns:
-            angle = pose[motor]
+            angle = moved[motor]
             low, high = min(self.low[motor], angle), max(self.high[motor], angle)
             moved[motor] = min(max(angle + by, low), high)
         return moved
