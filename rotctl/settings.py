@@ -34,8 +34,8 @@ def _narrowed(drawn: float | tuple[float, float]) -> float | tuple[float, float]
     return drawn if low < high else low
 
 
+# Drawn from a range; a number stands for itself.
 Drawn = Annotated[Finite | Range, AfterValidator(_narrowed)]
-"""Drawn from a range; a number stands for itself."""
 
 
 def ends(drawn: float | tuple[float, float]) -> tuple[float, float]:

@@ -452,7 +452,7 @@ def test_so_few_revolutions_count_nothing():
 def test_a_roll_out_of_a_stand_turns_twice_at_the_least():
     roll = "forward_roll +finish=stand behaviour.finish.revolutions="
     for few in ("1", "1.9"):
-        with pytest.raises(InputError, match=f"revolutions={few}: told to end in its first one a "):
+        with pytest.raises(InputError, match=f"revolutions={few}: a roll out of a stand that is "):
             load(["behaviour=chain", f"behaviour.parts=[stand,'{roll}{few}']"])
     for parts in (f"'{roll}1',stand", f"stand,'{roll}2'", f"stand,'{roll}0'"):
         assert load(["behaviour=chain", f"behaviour.parts=[{parts}]"])

@@ -162,9 +162,9 @@ def _require_turns(part: PartSettings, number: int) -> None:
         return
     place = part.place(number).removeprefix("behaviour.")
     raise ValueError(
-        f"{place}: behaviour.finish.revolutions={finish.revolutions:g}: told to end in its first "
-        f"one a roll out of a stand stops over its hands; give {LEAST_TURNS:g} or more, or 0, "
-        "which counts none"
+        f"{place}: behaviour.finish.revolutions={finish.revolutions:g}: a roll out of a stand that "
+        "is told to end in its first revolution stops over its hands; "
+        f"give {LEAST_TURNS:g} or more, or 0, which counts none"
     )
 
 

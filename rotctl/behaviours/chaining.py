@@ -146,7 +146,7 @@ class Chain:
         if self._failed(before.inner, memory, state):
             way = ways.chosen(self._ways, self._model, state)
             return self._begun(way, self._ways[way].parts[0], memory, state, anew=True)
-        if self._lies_down(memory):
+        if self._at_first(memory):  # who tumbles may come to lie otherwise
             way = ways.chosen(self._ways, self._model, state)
             first = self._ways[way].parts[0]
             if way != memory.way and self._settings.parts[first].behaviour.kind == "staged":
@@ -162,8 +162,8 @@ class Chain:
         place = parts.index(memory.part) + 1
         return parts[place] if place < len(parts) else None
 
-    def _lies_down(self, memory: ChainMemory) -> bool:
-        """Whether it is in the first stage of its way: who tumbles may come to lie otherwise."""
+    def _at_first(self, memory: ChainMemory) -> bool:
+        """Whether it is in the first stage of its way."""
         inner, first = memory.inner, self._ways[memory.way].parts[0]
         return memory.part == first and isinstance(inner, StagedMemory) and inner.stage == 0
 

@@ -82,7 +82,7 @@ def measure(log: Arrays, criteria: StandingCriteria, period: float) -> StandingM
 
 
 def upright_from(log: Arrays, criteria: StandingCriteria) -> int:
-    """The row from which on it is upright, still, and on its feet alone; how many, if none is."""
+    """The row from which on it is upright, still and on its feet alone; past the last if none."""
     up = np.clip(floats(log, "trajectory/trunk_axes")[:, 2, 2], -1.0, 1.0)
     lean = np.degrees([math.acos(one) for one in up.tolist()])
     speed = np.sqrt((floats(log, "trajectory/com_velocity") ** 2).sum(axis=1))
