@@ -100,6 +100,7 @@ def test_what_cannot_alight_is_refused():
         "{foot:[waist_y]}": "foot: waist_y is of no limb on either side",
         "{foot:[hip]}": "names the unknown joint 'hip'",
         "{paw:[hip_x]}": "paw",
+        "{foot:[hip_x,shoulder_x]}": "foot: shoulder_x_l does not move it",
     }.items():
         with pytest.raises(InputError, match=said):
             build(load([f"behaviour.alighting.limbs={limbs}"]))

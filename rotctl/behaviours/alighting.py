@@ -9,6 +9,7 @@ meantime: half of the way to the capture point, whose time is the pendulum's, sq
 
 from typing import Annotated
 
+import mujoco
 import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
@@ -57,7 +58,7 @@ class Alighting:
         """For both sides of a body.
 
         Raises:
-            InputError: there is no such body or joint.
+            InputError: there is no such body or joint, or the joint does not move the body.
         """
         self.settings, mj = settings, model.mj
         joints = mj.actuator_trnid[:, 0].tolist()
@@ -66,9 +67,12 @@ class Alighting:
             key = f"behaviour.alighting.limbs.{limb}"
             pairs = [self._pair(name, model, key) for name in names if model.motors(name, key)]
             for i, side in enumerate(SIDES):
-                motors = [pair[i] for pair in pairs]
-                own = [(motor, joints[motor]) for motor in motors]
-                self.limbs.append((body_id(mj, limb + side, key), own))
+                body = body_id(mj, limb + side, key)
+                own = [(pair[i], joints[pair[i]]) for pair in pairs]
+                for motor, joint in own:
+                    if joint not in _moving(mj, body):
+                        raise InputError(f"{key}: {model.joint_names[motor]} does not move it")
+                self.limbs.append((body, own))
         self.low, self.high = np.ascontiguousarray(model.joint_range.T)
 
     @staticmethod
@@ -114,6 +118,16 @@ class Alighting:
             low, high = min(self.low[motor], angle), max(self.high[motor], angle)
             moved[motor] = min(max(angle + by, low), high)
         return moved
+
+
+def _moving(mj: mujoco.MjModel, body: int) -> list[int]:
+    """The joints between a body and the world."""
+    joints: list[int] = []
+    while body:
+        first = int(mj.body_jntadr[body])
+        joints += range(first, first + int(mj.body_jntnum[body]))
+        body = int(mj.body_parentid[body])
+    return joints
 
 
 def _from(start: list[float], end: list[float]) -> list[float]:
