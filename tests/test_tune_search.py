@@ -4,6 +4,7 @@ import json
 import random
 import shutil
 import sqlite3
+import subprocess
 from dataclasses import replace
 
 import pytest
@@ -236,6 +237,21 @@ def test_the_history_is_a_table_and_a_picture_and_says_how_to_judge(tmp_path, wh
         assert ("none is better than the start" in said) == warned
         marked = [line for line in said.splitlines() if line.endswith("<- written")]
         assert [line.split("  ")[1] for line in marked] == [found.candidates[0].name]
+
+
+def test_what_is_printed_to_judge_a_result_can_be_pasted(whole, tmp_path):
+    """Its copies go into folders that are made where they are not there yet."""
+    folder, mine = tmp_path / "a search", tmp_path / "my conf"
+    written = result.write(whole, folder)
+    (mine / "controller").mkdir(parents=True)
+    with listing.own(mine):
+        copies = result.how_to_judge(whole, written, folder).splitlines()[1:-1]
+        assert [line.count("mkdir") for line in copies] == [1, 0]
+        for line in copies:
+            subprocess.run(line, shell=True, check=True)
+        chosen = config.load(["behaviour=small_tuned", "controller=small_tuned"])
+        assert chosen.behaviour.name == "small_tuned"
+        assert "mkdir" not in result.how_to_judge(whole, written, folder)
 
 
 def test_another_search_or_a_second_one_at_once_is_refused(space, tmp_path):

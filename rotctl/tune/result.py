@@ -122,9 +122,16 @@ def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str
     ]
     chosen = [f"{group}={choice_name(result)}" for group in groups]
     overrides = _shell([*kept, *chosen, "seed=range(0,50)"])
-    copies = [f"  cp {file} {(own_dir() or conf_dir()) / file.parent.name}/" for file in written]
-    judged = f"  rotctl sweep {overrides} --out {folder / 'judged'}"
+    judged = f"  rotctl sweep {overrides} --out {_shell([folder / 'judged'])}"
+    copies = [_copy(file) for file in written]
     return "\n".join(["to judge it, on seeds that no search has seen:", *copies, judged])
+
+
+def _copy(file: Path) -> str:
+    """What copies a choice to where it is found, into a folder that may have to be made."""
+    folder = (own_dir() or conf_dir()) / file.parent.name
+    made = "" if folder.is_dir() else f"mkdir -p {_shell([folder])} && "
+    return f"  {made}cp {_shell([file])} {_shell([folder])}/"
 
 
 def _chosen(result: SearchResult, group: str) -> str:
