@@ -16,6 +16,7 @@ from rotctl.log.schema import MODEL_PATH
 from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
+from rotctl.report.happenings import happenings
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
 from rotctl.run import LOG_NAME, run
@@ -253,6 +254,66 @@ def test_a_roll_that_is_pushed_is_shown_from_there(log, tmp_path):
     shown = module._rows(changed(log, tmp_path, first | own), 12, None, None)
     assert shown[0] == 120
     assert np.ptp(np.diff(shown)) <= 1
+
+
+def test_a_roll_that_stalls_is_shown_as_it_comes_to_that(log, tmp_path):
+    """At 4 s: half a revolution before and 2 s after, and from what happened before that."""
+    rows, rate = 600, 60
+    time = np.arange(rows) / rate
+    turned, wrench = np.zeros((rows, 3)), np.zeros((rows, 6))
+    turned[:, 1] = 2 * np.pi * np.minimum(time, 4.0)
+    own = {
+        name: np.repeat(log[name][:1], rows, axis=0)
+        for name in SCHEMA
+        if name != MODEL_PATH and len(log[name]) == log.steps
+    } | {"trajectory/time": time, "trajectory/angular_excursion": turned}
+
+    def shown(success):
+        outcome = {"success": success, "failure_reason": "stalled"}
+        made = changed(log, tmp_path, own | {"disturbance/wrench": wrench}, outcome=outcome)
+        found = module._rows(made, 12, None, None)
+        return found[0] / rate, found[-1] / rate
+
+    assert shown(True) == pytest.approx((2.0, 4.0), abs=0.05)
+    assert shown(False) == pytest.approx((3.5, 6.0), abs=0.11)
+    wrench[180:186, 0] = 50.0
+    assert shown(False) == pytest.approx((2.5, 6.0), abs=0.11)
+    wrench[:] = 0.0
+    wrench[420:426, 0] = 50.0  # long after it stalled
+    assert shown(False) == pytest.approx((3.5, 6.0), abs=0.11)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "told"),
+    [
+        (["disturbance=load", "disturbance.mass=5", "disturbance.time=0.3"], "chest takes up 5 kg"),
+        (
+            ["disturbance=slippery", "disturbance.friction=0.5", "disturbance.time=0.3"],
+            "the ground has 0.5 of its friction",
+        ),
+        (["behaviour=forward_roll", "behaviour.pace.schedule=[[0.3,0.5]]"], "told 0.5 rev/s"),
+        (["behaviour=forward_roll", "behaviour.pace.schedule=[[0.3,0]]"], "told to halt"),
+        (
+            ["behaviour=forward_roll", "+course=turn", "behaviour.course.schedule=[[0.3,12]]"],
+            "told 12 deg/s",
+        ),
+        (["behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=0.3"], "told to end"),
+    ],
+)
+def test_what_happens_in_a_run_is_told_in_the_next_frame(overrides, told, tmp_path):
+    made = run(load([*overrides, "duration=0.6"]), tmp_path)
+    done = RunLog.open(made.folder / LOG_NAME)
+    ((row, words),) = happenings(done)
+    assert (row, words) == (18, f"0.30 s: {told}")
+    rows = module._rows(done, 8, None, None)
+    assert any(18 <= one < 24 for one in rows)
+    first = min(one for one in rows if one >= 18)
+    for one, moment in zip(rows, frame.moments(done, rows), strict=True):
+        assert moment.happened == ((words,) if one == first else ())
+    (later,) = frame.moments(done, [30])
+    assert later.happened == ()
+    (later,) = frame.moments(done, [30], lasting=0.5)
+    assert later.happened == (words,)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """A run as one picture: frames side by side, drawn from the log alone."""
 
+from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
 
@@ -10,13 +11,16 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.columns import heading
+from rotctl.metrics.turning import longest_stall
 from rotctl.report import gl, stored_model
 from rotctl.report.frame import FORCE_SCALE, PAPER, Moment, draw, moments, turns_done
+from rotctl.report.happenings import happenings
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet
 from rotctl.report.skill import BEFORE, Part, first_push, parts
 from rotctl.report.spacing import even, spread
 from rotctl.report.stage_names import stages_of_parts
+from rotctl.report.title import verdict
 from rotctl.rotations import Array
 
 MAX_FRAMES = 200
@@ -24,6 +28,8 @@ OVERSAMPLING = 2  # frames are drawn this much larger: smooth edges without mult
 MAX_COLUMNS = 6
 SETTLED = 2.0  # [s] by default the strip starts here
 DEFAULT_TURNS = 2.0  # [rev] and lasts so long
+STALLED, LONG = 0.1, 1.5  # [rev] less in so many s, and a roll stalls, as its usual criteria say
+LEADS, FOLLOWS = 0.5, 2.0  # [rev, s] that are shown before a stall, and of it
 SMALL = 1_500_000  # [bytes] a larger picture is reduced to 256 colours
 
 _THIN = 4  # pixels between the frames of a strip
@@ -44,9 +50,9 @@ def filmstrip(
         frames: how many; fewer if there are not as many steps.
         start: time of the first frame [s].
         end: time of the last frame [s]; from start to end they are evenly spaced in time. Without
-            both: of a roll two revolutions from 2 s on, evenly, or from its first push; the whole
-            run where those are not reached, and of anything else what `rotctl.report.skill` finds,
-            as `rotctl.report.spacing` says.
+            both: of a roll two revolutions from 2 s on, evenly, or from what first happens to it;
+            of one that failed how it came to stall; the whole run where those are not reached, and
+            of anything else what `rotctl.report.skill` finds, as `rotctl.report.spacing` says.
         columns: frames in a row; at most 6 by default.
 
     Raises:
@@ -105,17 +111,43 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     time = drawable(log, log["trajectory/qpos"])
     if start is not None or end is not None:
         return even(*window(time, start, end), frames)
-    found = parts(log, time, stages_of_parts(log))
+    changed = [each.row for each in happenings(log) if each.row < len(time)]
+    found = parts(log, time, stages_of_parts(log), min(changed, default=None))
     if found:
-        return spread(log, found, frames)
+        return spread(log, found, frames, changed)
     pushed = first_push(log)
-    if pushed is not None and pushed >= len(time):
-        pushed = None  # it broke down before
-    since = SETTLED if pushed is None else max(SETTLED, float(time[pushed]) - BEFORE)
-    turning = _two_turns(time, turns_done(log)[: len(time)], since)
-    if turning and pushed is None:
-        return even(*turning, frames)
-    return spread(log, [Part(*(turning or (0, len(time) - 1)), 1.0)], frames)
+    # It may have broken down before it was pushed.
+    events = sorted([*changed, *([] if pushed is None or pushed >= len(time) else [pushed])])
+    turns = turns_done(log)[: len(time)]
+    shown = _failing(time, turns, events) if verdict(log.outcome)[0] is False else None
+    if shown is None:
+        since = max(SETTLED, float(time[events[0]]) - BEFORE) if events else SETTLED
+        shown = _two_turns(time, turns, since)
+        if shown and not events:
+            return even(*shown, frames)
+    return spread(log, [Part(*(shown or (0, len(time) - 1)), 1.0)], frames, changed)
+
+
+def _failing(time: Array, turns: Array, events: Sequence[int]) -> tuple[int, int] | None:
+    """Rows of how a roll came to its longest stall, and what followed; None if it never stalled.
+
+    Args:
+        turns: done by each row (n,) [rev].
+        events: rows in which something happened, in order. What did in the two revolutions before
+            is shown, too.
+    """
+    period = float(time[-1] - time[0]) / max(len(time) - 1, 1)
+    progress = np.abs(turns)
+    lasted, begin = longest_stall(progress, STALLED, period)
+    if lasted < LONG:
+        return None
+    stalls, furthest = round(begin / period), np.maximum.accumulate(progress)
+    first, early = (
+        int(np.searchsorted(furthest, furthest[stalls] - turn)) for turn in (LEADS, DEFAULT_TURNS)
+    )
+    caused = [row for row in events if early <= row <= stalls]
+    first = min([first, *(max(row - round(BEFORE / period), 0) for row in caused)])
+    return first, min(stalls + round(FOLLOWS / period), len(time) - 1)
 
 
 def _two_turns(time: Array, turns: Array, since: float) -> tuple[int, int] | None:

@@ -8,6 +8,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from rotctl.log import RunLog
 from rotctl.metrics.columns import Arrays, in_frame
+from rotctl.report.happenings import happenings
 from rotctl.report.stage_names import stage_names
 from rotctl.rotations import Array
 
@@ -27,6 +28,7 @@ OUTSIDE_SCALE = 4.0  # its arrow is so much longer: a push that tips one over we
 LONGEST_OUTSIDE = 0.8  # [m] of an adult's, at most: it begins in the picture
 LEAST_PUSH = 0.5  # [N] less is none
 FARTHEST = 1.0  # [m] from the centre of mass to where it acts; a stranger's log may say anything
+MOST_TOLD = 4  # lines over a frame; a schedule may be long
 STEADY = 1e-3  # what varies less over a stage is no blend
 _GROUND_INK = (108, 120, 134)
 
@@ -43,6 +45,7 @@ class Moment:
     used: Array  # (k,)
     push: Array  # (3,) force from outside [N]
     pushed: Array  # (3,) where it acts: on its line, nearest to the centre of mass
+    happened: tuple[str, ...] = ()  # since the frame before
 
 
 def turns_done(log: Arrays) -> Array:
@@ -54,14 +57,16 @@ def turns_done(log: Arrays) -> Array:
     return turns
 
 
-def moments(log: RunLog, rows: list[int]) -> list[Moment]:
-    """What is drawn over the frames of these rows."""
+def moments(log: RunLog, rows: list[int], lasting: float = 0.0) -> list[Moment]:
+    """What is drawn over the frames of these rows; what happened for so long [s] from then on."""
     time, turns, notes = log["trajectory/time"], turns_done(log), _notes(log)
     filled = log["contacts/body"] >= 0
     position, used = log["contacts/position"], log["contacts/used"]
     force = log["contacts/force_realised"]
     sound = filled & np.isfinite(position).all(axis=2) & np.isfinite(force).all(axis=2)
     push, pushed = _pushes(log)
+    changed = happenings(log)
+    before = [rows[0] - 1, *rows[:-1]]
     return [
         Moment(
             time=float(time[i]),
@@ -72,8 +77,13 @@ def moments(log: RunLog, rows: list[int]) -> list[Moment]:
             used=used[i, sound[i]],
             push=push[i],
             pushed=pushed[i],
+            happened=tuple(
+                each.told
+                for each in changed
+                if each.row <= i and (each.row > last or time[i] < time[each.row] + lasting)
+            ),
         )
-        for i in rows
+        for last, i in zip(before, rows, strict=True)
     ]
 
 
@@ -119,9 +129,11 @@ def draw(stage: "Scene", state: Array, moment: Moment, size: tuple[int, int]) ->
     pen = ImageDraw.Draw(picture)
     for (x, y), text in labels:
         pen.text((x, y), text, _GROUND_INK, typeface(12), anchor="ma")
+    lines = list(moment.happened)
     if is_pushed(moment):
-        told = f"from outside: {np.linalg.norm(moment.push):.0f} N"
-        pen.text((8, 6), told, OUTSIDE, typeface(14))
+        lines.insert(0, f"from outside: {np.linalg.norm(moment.push):.0f} N")
+    for i, told in enumerate(lines[:MOST_TOLD]):
+        pen.text((8, 6 + 18 * i), told, OUTSIDE, typeface(14))
     return picture
 
 

@@ -38,17 +38,20 @@ class Part(NamedTuple):
     share: float
 
 
-def parts(log: Arrays, time: Array, stages: Sequence[int] = ()) -> list[Part]:
+def parts(
+    log: Arrays, time: Array, stages: Sequence[int] = (), happened: int | None = None
+) -> list[Part]:
     """What to show of a run, in order; empty for a roll that goes on.
 
     Args:
         time: of the rows that can be drawn [s].
+        happened: the first row of what `rotctl.report.happenings` finds; not needed of a chain.
         stages: how many each part of a chain has; of what is none they need not be told.
     """
     chained = len(stages) > 1 and not again(log, stages)  # who begins again is shown from the first
     if chained:
         return _of_a_chain(log, stages, len(time))
-    shown = _of_one(log, time)
+    shown = _of_one(log, time, happened)
     return [Part(*shown, MOVES)] if shown else []
 
 
@@ -66,7 +69,7 @@ def _of_a_chain(log: Arrays, stages: Sequence[int], rows: int) -> list[Part]:
     return found
 
 
-def _of_one(log: Arrays, time: Array) -> tuple[int, int] | None:
+def _of_one(log: Arrays, time: Array, happened: int | None = None) -> tuple[int, int] | None:
     """First and last row of what one behaviour shows; None for a roll that goes on."""
     rows = len(time)
     period = float(np.clip((time[-1] - time[0]) / max(rows - 1, 1), *PERIODS)) if rows > 1 else 0.0
@@ -74,7 +77,7 @@ def _of_one(log: Arrays, time: Array) -> tuple[int, int] | None:
     if not period:
         return None
     off, down = longest_flight(log)
-    first = _begin(log, staged, period)
+    first = _begin(log, staged, period, happened)
     last = _still(log, 0, period, rows, poses=True)
     if staged.any() and 0 < off < rows and (down - off) * period > FLIGHT:
         if staged[off] < staged.max():
@@ -101,7 +104,7 @@ def _before(log: Arrays, off: int, steps: int) -> int:
     return first
 
 
-def _begin(log: Arrays, staged: Array, period: float) -> int | None:
+def _begin(log: Arrays, staged: Array, period: float, happened: int | None) -> int | None:
     """Where a motion of stages begins, a fall, a push, the end of a roll; None if nothing does."""
     turns = np.abs(turns_done(log))
     if staged.any():
@@ -115,10 +118,10 @@ def _begin(log: Arrays, staged: Array, period: float) -> int | None:
     elif not np.asarray(log["contacts/count"])[0]:
         begin = 0
     else:
-        pushed = first_push(log)
-        if pushed is None:
+        some = [row for row in (first_push(log), happened) if row is not None]
+        if not some:
             return None
-        begin = pushed
+        begin = min(some)
     return max(begin - round(BEFORE / period), 0)
 
 

@@ -2,8 +2,8 @@
 
 A somersault is over in half a second, and standing still after it takes two: frames that were even
 in time would miss what is fast. So they are even in a mean of time and of how far the body turned
-and its joints moved, none closer to the next than `CLOSEST`; then each stage, push and time upside
-down that has none gets the nearest that can be spared.
+and its joints moved, none closer to the next than `CLOSEST`; then each stage, push, change and time
+upside down that has none gets the nearest that can be spared.
 """
 
 from bisect import bisect_left
@@ -18,6 +18,7 @@ from rotctl.rotations import Array
 CLOSEST = 1 / 30  # of a part's rows are between two frames at least
 CROWDED = 0.4  # and of the mean distance, where so many frames are wanted that this is less
 MOVING = 0.7  # of the frames are spread over what moves, the rest over time
+SOON = 6  # rows from what happened on, in which a frame shows it
 FASTEST = 50.0  # [rad/s] a stranger's log may say anything
 
 Stretch = tuple[int, int]  # first and last row
@@ -29,10 +30,17 @@ def even(first: int, last: int, frames: int, ends: bool = True) -> list[int]:
     return list(dict.fromkeys(np.round(places).astype(int).tolist()))
 
 
-def spread(log: Arrays, chosen: Sequence[Part], frames: int) -> list[int]:
-    """So many rows of these parts at most, by their shares; the last row of the last is one."""
+def spread(
+    log: Arrays, chosen: Sequence[Part], frames: int, happened: Sequence[int] = ()
+) -> list[int]:
+    """So many rows of these parts at most, by their shares; the last row of the last is one.
+
+    Args:
+        happened: rows of what `rotctl.report.happenings` finds.
+    """
     rows: list[int] = []
-    speed, marks = change(log), _marks(log)
+    speed = change(log)
+    marks = [*_marks(log), *(_soon(row, len(speed)) for row in happened[:frames])]
     left, shares = frames, sum(part.share for part in chosen)
     for part in chosen:
         many = min(left, max(1, round(left * part.share / shares)))
@@ -78,6 +86,13 @@ def _marks(log: Arrays) -> list[Array]:
         down = floats(log, "trajectory/trunk_axes")[:, 2, 2] < 0.0
         found.append(down.astype(float))
     return found
+
+
+def _soon(row: int, rows: int) -> Array:
+    """A mark of the rows in which it is seen what happened in one."""
+    mark = np.zeros(rows)
+    mark[row : row + SOON] = 1.0
+    return mark
 
 
 def _stretches(part: Part, marks: list[Array], most: int) -> list[Stretch]:

@@ -33,6 +33,7 @@ RATE = 30.0  # [frames/s] of simulated time, which the video shows as fast as it
 FRAME = (640, 400)  # pixels of the picture
 HEADER, FOOTER = 48, 32  # pixels above and below it
 BESIDE = 0.5  # [s] before and after what is shown
+TOLD = 1.5  # [s] for which words say what happened
 FITTED = 60  # states that the camera's distance is chosen from
 
 
@@ -66,7 +67,7 @@ def video(
     from rotctl.report import scene
 
     model = stored_model.load(log)
-    top, shown = title(log), moments(log, rows)
+    top, shown = title(log), moments(log, rows, TOLD)
     size = (FRAME[0], HEADER + FRAME[1] + FOOTER)
     with (
         files.replacing(out) as part,

@@ -1,0 +1,65 @@
+"""What happens in a run that no force tells: a load taken up, slippery ground, another command."""
+
+import re
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from rotctl.documents import from_yaml
+from rotctl.errors import InputError
+from rotctl.log import RunLog
+from rotctl.plain import find
+from rotctl.report.title import plain
+
+# What `rotctl.mechanics.changes` tells; other events are of solvers.
+_CHANGES = re.compile(r"\S+ takes up \S+ kg|the ground has \S+ of its friction")
+_NUMBER = (int, float)
+
+
+class Happening(NamedTuple):
+    """One of them.
+
+    Attributes:
+        row: of the log, the first that it is true of.
+        told: in words.
+    """
+
+    row: int
+    told: str
+
+
+def happenings(log: RunLog) -> list[Happening]:
+    """All of a run, in order."""
+    time = log["trajectory/time"]
+    found = [each for each in log.events if _CHANGES.fullmatch(each[1])] + _commands(log)
+    within = [(when, told) for when, told in found if time[0] < when <= time[-1]]
+    rows = np.searchsorted(time, [when - 1e-9 for when, _ in within]).tolist()
+    return sorted(
+        Happening(row, f"{when:.2f} s: {plain(told)}")
+        for row, (when, told) in zip(rows, within, strict=True)
+    )
+
+
+def _commands(log: RunLog) -> list[tuple[float, str]]:
+    """When a roll is told something else, and what; parts of a chain tell nothing."""
+    try:
+        behaviour = find(from_yaml("config", log.config_yaml), ("behaviour",))
+    except InputError:
+        return []
+    unit = "m/s" if find(behaviour, ("pace", "keep")) == "speed" else "rev/s"
+    found = [
+        (time, f"told {value:g} {unit}" if value else "told to halt")
+        for time, value in _schedule(behaviour, "pace")
+    ]
+    found += [(time, f"told {rate:g} deg/s") for time, rate in _schedule(behaviour, "course")]
+    end = find(behaviour, ("finish", "after"))
+    return found + ([(float(end), "told to end")] if isinstance(end, _NUMBER) else [])
+
+
+def _schedule(behaviour: Any, what: str) -> list[tuple[float, float]]:
+    told = find(behaviour, (what, "schedule"))
+    return [
+        (float(one[0]), float(one[1]))
+        for one in (told if isinstance(told, list) else [])
+        if isinstance(one, list) and len(one) == 2 and all(isinstance(n, _NUMBER) for n in one)
+    ]
