@@ -5,7 +5,7 @@ import pytest
 
 from rotctl.config import load
 from rotctl.log import LOG_NAME, RunLog
-from rotctl.report.frame import moments
+from rotctl.report.frame import moments, turns_done
 from rotctl.report.skill import parts
 from rotctl.report.stage_names import stage_names
 from rotctl.run import run
@@ -165,3 +165,16 @@ def test_below_a_frame_stands_the_blend_or_else_the_stage(tmp_path):
     assert [moment.note for moment in moments(flips, [0, flips.steps - 1])] == ["stand", "crouch"]
     ends = log("behaviour=forward_roll", "+finish=stand")
     assert stage_names(ends) == ["roll", "stand"]
+
+
+def test_each_part_of_a_chain_counts_the_turns_about_its_own_axis():
+    """A flip, a stand, then a pirouette; a roll goes on counting after the one before it."""
+    log = log_of(4.0, stages=(1.0, 2.0, 3.0))
+    time, left, up = log["trajectory/time"], np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
+    flips, turns = np.minimum(time, 1.0), np.clip(time - 2.0, 0.0, 1.0)
+    log["trajectory/angular_excursion"] = 2 * np.pi * (np.outer(flips, left) + np.outer(turns, up))
+    log["trajectory/trunk_axis"] = np.where((time >= 2.0)[:, None], up, left)
+    chained = turns_done(log, [1, 1, 1, 1])
+    at = [round(when * RATE) for when in (0.5, 0.99, 1.5, 2.5, 3.5)]
+    assert chained[at] == pytest.approx([0.5, 1.0, 1.0, 0.5, 1.0], abs=0.02)
+    assert turns_done(log)[at] == pytest.approx([0.5, 1.0, 1.0, 1.0, 1.0], abs=0.02)

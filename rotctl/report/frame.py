@@ -1,5 +1,6 @@
 """One frame of a run: the drawn model, its contacts and forces, and metres on the ground."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 from rotctl.log import RunLog
 from rotctl.metrics.columns import Arrays, in_frame
 from rotctl.report.happenings import happenings
-from rotctl.report.stage_names import stage_names
+from rotctl.report.stage_names import stage_names, stages_of_parts
 from rotctl.rotations import Array
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Moment:
     """What a frame shows beside the model."""
 
     time: float  # [s]
-    turns: float  # about its axis, since the start of the run [rev]
+    turns: float  # about its axis, see `turns_done` [rev]
     note: str  # the blend of the poses where there is one, else the name of the stage
     contacts: Array  # (k, 3)
     forces: Array  # (k, 3) [N]
@@ -48,18 +49,31 @@ class Moment:
     happened: tuple[str, ...] = ()  # since the frame before
 
 
-def turns_done(log: Arrays) -> Array:
-    """Excursion about what the behaviour turns about, since the start of the run [rev]."""
-    axis = in_frame(log, "trajectory/trunk_axis")[:1]
-    about = int(np.abs(axis[0]).argmax()) if len(axis) else 1
-    angle = in_frame(log, "trajectory/angular_excursion")[:, about]
-    turns: Array = (angle - angle[:1]) / (2.0 * np.pi)
+def turns_done(log: Arrays, stages: Sequence[int] = ()) -> Array:
+    """Excursion about what the behaviour turns about, since the start of the run (n,) [rev].
+
+    Args:
+        stages: how many each part of a chain has. A part that turns about another axis than the
+            one before begins at 0.
+    """
+    axis = in_frame(log, "trajectory/trunk_axis")
+    angle = in_frame(log, "trajectory/angular_excursion")
+    part = np.zeros(len(angle), dtype=int)
+    if len(stages) > 1:
+        part = np.searchsorted(np.cumsum(stages), log["command/stage"], side="right")
+    begins = np.flatnonzero(np.diff(part, prepend=-1)).tolist()
+    turns, before = np.zeros(len(angle)), -1
+    for first, end in zip(begins, [*begins[1:], len(angle)], strict=True):
+        about = int(np.abs(axis[first]).argmax())
+        done = turns[first - 1] if about == before else 0.0
+        turns[first:end] = done + (angle[first:end, about] - angle[first, about]) / (2.0 * np.pi)
+        before = about
     return turns
 
 
 def moments(log: RunLog, rows: list[int], lasting: float = 0.0) -> list[Moment]:
     """What is drawn over the frames of these rows; what happened for so long [s] from then on."""
-    time, turns, notes = log["trajectory/time"], turns_done(log), _notes(log)
+    time, turns, notes = log["trajectory/time"], turns_done(log, stages_of_parts(log)), _notes(log)
     filled = log["contacts/body"] >= 0
     position, used = log["contacts/position"], log["contacts/used"]
     force = log["contacts/force_realised"]
