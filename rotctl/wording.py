@@ -34,6 +34,10 @@ def readable(summary: dict[str, Any], settle: float = 0.0) -> str:
         value = summary.get(key)
         return format(value, form) if isinstance(value, int | float) else "-"
 
+    def metres(key: str) -> str:
+        value = number(key)
+        return value if value == "-" else f"{value} m"
+
     def shown(key: str) -> str:
         value = summary[key]
         return one_line(value) if isinstance(value, str) else number(key, ".3g")
@@ -49,7 +53,7 @@ def readable(summary: dict[str, Any], settle: float = 0.0) -> str:
             f"{_pace(summary)}{_after(summary, settle)} ({_asked(summary, 'angular_velocity')})",
             f"  speed        {number('speed_mean')} m/s ({_asked(summary, 'speed')})",
             f"  heading      {number('heading_error_end', '.0f')} deg off at the end, "
-            f"drift {number('lateral_drift')} m",
+            f"drift {metres('lateral_drift')}",
             f"  stall        {number('longest_stall')} s at most",
         ]
         if "halted" in summary:

@@ -100,7 +100,7 @@ def along_way(log: Arrays) -> NDArray[np.float64]:
     """The centre of mass (steps, 3): how far along its way, left of it, and high [m].
 
     A way that turns is as long as what was travelled along it; what is left of it is the distance
-    to its nearest place. A way without places has nothing beside it.
+    to its nearest place; NaN of a way without places, which aims at where it is.
     """
     com = in_frame(log, "trajectory/com")
     if not turns(log):
@@ -108,7 +108,7 @@ def along_way(log: Arrays) -> NDArray[np.float64]:
     place = floats(log, "trajectory/com")
     off = place - nearest_places(log)
     off[:, 2] = 0.0
-    side = np.sign(along_frame(log, off)[:, 1])
+    side = np.sign(along_frame(log, off)[:, 1]) if off.any() else np.nan
     ahead = along_frame(log, np.diff(place, axis=0), slice(0, -1))[:, 0]
     way = np.concatenate(([0.0], np.cumsum(ahead)))[: len(place)]
     return np.column_stack((way, side * np.sqrt((off**2).sum(axis=1)), com[:, 2]))

@@ -102,7 +102,8 @@ class RollingMetrics:
         speed_mean: of the centre of mass forward, after settling [m/s].
         heading_error_end: median heading of the trunk's axis that it rolls about, over
             the last second, against the rolling axis [deg]; positive turns left.
-        lateral_drift: furthest of the centre of mass to either side of where it started [m].
+        lateral_drift: furthest of the centre of mass to either side of where it started [m];
+            NaN on a way that turns and has no places, as `lateral_rms`.
         lateral_rms: root mean square of how far it is beside that line, or the path it follows [m].
         longest_stall: longest time without the criterion's progress, halts left out [s].
         stalled_at: when that began [s].

@@ -53,7 +53,11 @@ def failure_reason(metrics: RollingMetrics, criteria: RollingCriteria, wanted: f
             abs(m.heading_error_end) < c.heading,
             f"heading off by {m.heading_error_end:.0f} deg at the end",
         ),
-        (m.lateral_drift < c.lateral_drift, f"drifted {m.lateral_drift:.2f} m sideways"),
+        (
+            # A way without places has nothing beside it.
+            m.lateral_drift < c.lateral_drift or math.isnan(m.lateral_drift),
+            f"drifted {m.lateral_drift:.2f} m sideways",
+        ),
     )
     # What is not a number keeps no rule.
     return next((reason for kept, reason in rules if not kept), "")

@@ -1,7 +1,7 @@
 """One training run, cut as soon as it is hopeless: the task that the engines carry out."""
 
 from dataclasses import dataclass
-from math import acos, degrees, nan, pi
+from math import acos, degrees, isnan, nan, pi
 
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.errors import InputError
@@ -57,7 +57,7 @@ def attempt(item: Attempt) -> TrialRun:
         survived=found["duration"],
         wanted=config.duration,
         revolutions=found["revolutions"],
-        drift=found["lateral_drift"],
+        drift=0.0 if isnan(found["lateral_drift"]) else found["lateral_drift"],
         heading=found["heading_error_end"],
         success=not judged.reason,
         columns={name: float(found.get(name, nan)) for name in item.columns},
