@@ -97,6 +97,19 @@ def test_it_hangs_on_the_pelvis_with_our_names_and_signs(robot):
     assert any("no torque limit in the file for elbow, neck_y" in note for note in found.notes)
 
 
+def test_a_head_of_any_name_is_one(robot, tmp_path):
+    """What a hinge moves on the chest beside the arms, with nothing above it."""
+    path = tmp_path / "skull.xml"
+    path.write_text(text(**{'name="head"': 'name="skull"'}))
+    found, usual = adopt(path, "mine"), adopt(robot, "mine")
+    assert (found.character, found.joints) == (usual.character, usual.joints)
+    assert found.joints["neck_y"] == "nod"
+    assert (found.roles["neck"], found.roles["head"]) == ("skull", "skull")
+    stiff = {'name="head"': 'name="skull"', '<joint name="nod" axis="0 1 0" range="-40 40"/>': ""}
+    path.write_text(text(**stiff))
+    assert "skull" in [body["name"] for body in adopt(path, "mine").character["bodies"]]
+
+
 def test_it_moves_as_the_file_does(robot):
     """Every angle by itself: bodies are where the file's own model has them."""
     found = adopt(robot, "mine")

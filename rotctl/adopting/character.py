@@ -30,6 +30,7 @@ _ADULT = {
     "ankle": 100.0, "shoulder": 120.0, "elbow": 80.0, "wrist": 20.0, "more": 20.0,
 }  # fmt: skip
 ADULT_HEIGHT, ADULT_MASS = 1.75, 70.0  # whose strength that is [N m], and whose gains there are
+END = " end"  # after a body's name, its far end
 SAME_PLACE = 0.01  # [m] hinges of one body that are farther apart are told
 JOINTS = [
     *(f"{group}_{letter}" for group in ("waist", "chest", "neck", "shoulder") for letter in "yxz"),
@@ -92,6 +93,8 @@ def adopt(
         raise InputError(
             f"{path}: legs and arms hang on one body, {roles['hips']}; no waist to bend"
         )
+    if roles.get("head", "").removesuffix(END) in [names[b] for b in mj.jnt_bodyid]:
+        roles["head"] = roles["head"].removesuffix(END)  # the last body that a hinge moves
     bodies = {role: names.index(body) for role, body in roles.items() if body in names}
     for role, body in bodies.items():
         if mj.body_rootid[body] != mj.jnt_bodyid[0]:
@@ -113,7 +116,7 @@ def adopt(
 def _with_ends(parents: Mapping[str, str]) -> dict[str, str]:
     """Bodies without children get one, as many a robot has no hand that is a body."""
     leaves = set(parents) - set(parents.values())
-    return {**parents, **{f"{leaf} end": leaf for leaf in parents if leaf in leaves}}
+    return {**parents, **{f"{leaf}{END}": leaf for leaf in parents if leaf in leaves}}
 
 
 def _common(parents: Mapping[str, str], one: str, other: str) -> str:
