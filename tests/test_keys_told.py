@@ -31,6 +31,14 @@ def test_a_body_that_is_not_there_is_told_by_its_key(behaviour, key):
     )
 
 
+@pytest.mark.parametrize("behaviour", ["back_flip", "press_up"])
+def test_two_stages_of_one_name_are_refused(behaviour):
+    """`otherwise` would not know which one it goes to, nor a reader of the log which one it was."""
+    first = load([f"behaviour={behaviour}"]).behaviour.stages[0].name
+    told = complaint([f"behaviour={behaviour}", f"behaviour.stages.1.name={first}"])
+    assert told == f"behaviour: two stages are called {first!r}; each needs a name of its own"
+
+
 @pytest.mark.parametrize(
     ("key", "known"),
     [("catch.out", "behaviour.catch.out"), ("course.radius", "behaviour.course.radius")],

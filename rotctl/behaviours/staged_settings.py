@@ -65,6 +65,9 @@ class StagedSettings:
         if self.take_off and not any(isinstance(s.until, Launched) for s in self.stages):
             raise ValueError(f"take_off={self.take_off:g}: no stage ends as it is launched")
         names = [stage.name for stage in self.stages]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"two stages are called {name!r}; each needs a name of its own")
         for stage in self.stages:
             if stage.otherwise and stage.otherwise.stage not in names:
                 there = ", ".join(names)
