@@ -150,6 +150,20 @@ def test_contacts_of_a_frame_are_those_of_its_row(log):
     np.testing.assert_array_equal(found["used"][here], log["contacts/used"][rows[i]][filled])
 
 
+def test_arrows_of_a_small_body_are_as_long_as_in_its_filmstrip(tmp_path):
+    """Of an eighth of the weight half as long, for the same number of body weights."""
+    result = run(load(["duration=0.1", "character.mass=8.75"]), tmp_path)
+    log = RunLog.open(result.folder / LOG_NAME)
+    found = data(log, None)["contacts"]
+    rows = at_rate(log["trajectory/time"], 30.0)
+    i = next(i for i, row in enumerate(rows) if (log["contacts/body"][row] >= 0).any())
+    filled = log["contacts/body"][rows[i]] >= 0
+    expected = log["contacts/force_realised"][rows[i]][filled] / (8.75 * 9.81) / 2
+    here = slice(*found["start"][i : i + 2])
+    np.testing.assert_allclose(found["realised"][here], expected, rtol=1e-3)
+    assert "body weight = 0.23&nbsp;m" in page(log)
+
+
 def test_a_run_that_broke_down_is_played_until_there(log, tmp_path):
     states, spin = log["trajectory/qpos"].copy(), log["trajectory/angular_velocity"].copy()
     states[30:] = np.nan

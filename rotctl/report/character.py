@@ -9,6 +9,8 @@ from rotctl.rotations import Array
 if TYPE_CHECKING:
     import mujoco
 
+FORCE_SCALE = 0.45  # [m] length of an arrow as large as an adult's weight
+ADULT_WEIGHT = 686.7  # [N] of 70 kg, at which other sizes of pictures are as written
 ROOT_BODY = 1  # MuJoCo's id; 0 is the world
 
 
@@ -30,3 +32,8 @@ def gravity(model: "mujoco.MjModel") -> Array:
 def weight(model: "mujoco.MjModel") -> float:
     """The character's [N]."""
     return float(np.linalg.norm(gravity(model)))
+
+
+def size(model: "mujoco.MjModel") -> float:
+    """The character's, 1 for an adult's weight [-]: what is drawn beside it keeps pace."""
+    return float(np.cbrt(weight(model) / ADULT_WEIGHT)) or 1.0

@@ -13,7 +13,8 @@ from rotctl.log import RunLog
 from rotctl.metrics.columns import heading
 from rotctl.metrics.turning import longest_stall
 from rotctl.report import gl, stored_model
-from rotctl.report.frame import FORCE_SCALE, PAPER, Moment, draw, moments, turns_done
+from rotctl.report.character import FORCE_SCALE
+from rotctl.report.frame import PAPER, Moment, draw, moments, turns_done
 from rotctl.report.happenings import happenings
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet

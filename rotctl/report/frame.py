@@ -9,6 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from rotctl.log import RunLog
 from rotctl.metrics.columns import Arrays, in_frame
+from rotctl.report.character import FORCE_SCALE
 from rotctl.report.happenings import happenings
 from rotctl.report.stage_names import stage_names, stages_of_parts
 from rotctl.rotations import Array
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from rotctl.report.camera import Camera
     from rotctl.report.scene import Scene
 
-FORCE_SCALE = 0.45  # [m] length of an arrow as large as an adult's weight
 MAX_FORCE = 5.0  # [body weights] longer arrows are cut
 MARK_SIDE = 0.42  # [m] towards the camera from an adult
 PAPER, INK, SOFT = (255, 255, 255), (28, 34, 44), (104, 114, 128)

@@ -67,7 +67,8 @@ def page(log: RunLog, compare: RunLog | None = None, site: Site | None = None) -
     from rotctl.report.replay_data import data
 
     style, script = _static("replay.css"), code()
-    tree, block = pack(data(log, compare))
+    told = data(log, compare)
+    tree, block = pack(told)
     top = title(log)
     return Template(_static("replay.html")).substitute(
         policy=policy(script=BESIDE if site else this(script), style=this(style)),
@@ -78,6 +79,7 @@ def page(log: RunLog, compare: RunLog | None = None, site: Site | None = None) -
         verdict=escape(top.verdict),
         mood={True: "good", False: "bad", None: ""}[top.success],
         other=_other(title(compare)) if compare else "",
+        arrow=f"{told['arrow']:.2g}",
         layers=_layers(compare is not None),
         style=style,
         script=f'<script src="{escape(site.script)}"></script>'

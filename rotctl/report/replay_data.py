@@ -34,6 +34,7 @@ def data(log: RunLog, compare: RunLog | None) -> Tree:
     rows = [_frames(time) for time in times]
     plotted = [_plotted(each, len(time)) for each, time in zip(logs, times, strict=True)]
     return {
+        "arrow": character.FORCE_SCALE * character.size(models[0]),
         "duration": max(float(time[-1]) for time in times) or 1e-3,
         "runs": [_run(*each) for each in zip(logs, models, rows, strict=True)],
         "contacts": _contacts(logs[0], models[0], rows[0]),
@@ -73,9 +74,9 @@ def _run(log: RunLog, model: mujoco.MjModel, rows: list[int]) -> Tree:
 def _contacts(log: RunLog, model: mujoco.MjModel, rows: list[int]) -> Tree:
     """Contacts of all frames one after the other; those of frame i begin at `start[i]`.
 
-    Forces are in body weights.
+    Forces are in body weights times the body's size: the page draws an adult's.
     """
-    weight = max(character.weight(model), 1.0)
+    weight = max(character.weight(model), 1.0) / character.size(model)
     position = log["contacts/position"][rows]
     realised = log["contacts/force_realised"][rows] / weight
     predicted = log["contacts/force_predicted"][rows] / weight

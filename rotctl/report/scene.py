@@ -22,7 +22,6 @@ MARGIN = 1.25  # of the picture around the character
 FALL = 5.0  # [m] of heights over the ground, at an adult's size: who jumps stays below
 AROUND = 1.6  # half of a picture of a fall, as a multiple of half the body's height
 LEAST_HALF_HEIGHT = 0.5  # [m] keeps a tucked adult from filling the picture
-ADULT_WEIGHT = 686.7  # [N] of 70 kg, at which other sizes here are as written
 GROUND_LINE = 0.9  # how far below the middle the ground is, in half heights
 DISC = 0.17  # [m] radius of the disc that stands for a shadow, at the ground
 DISC_GROWTH = 0.12  # [m] for each metre above
@@ -129,8 +128,8 @@ class Scene:
 
     @property
     def size(self) -> float:
-        """Of the character, 1 for an adult's weight [-]: what is drawn beside it keeps pace."""
-        return float(np.cbrt(self.weight / ADULT_WEIGHT)) or 1.0
+        """Of the character [-]."""
+        return character.size(self.model)
 
     def ground(self, x: float, y: float) -> float:
         """Height of the ground at world (x, y) [m], in the state drawn last; 0 beside it."""
