@@ -122,6 +122,19 @@ def test_dry_run_writes_nothing(cli, tmp_path):
     assert not out.exists()
 
 
+@pytest.mark.parametrize(
+    ("keep", "runs", "before"),
+    [("all", 8, "about "), ("failures", 8, "up to about "), ("sample:3", 3, "about ")],
+)
+def test_a_dry_run_tells_the_disk_that_logs_take(cli, tmp_path, keep, runs, before):
+    log = make(load([BRIEF, "seed=0"])).log
+    grid = ("sweep", BRIEF, "seed=range(0,8)", "--keep", keep, "--dry-run", "--out", tmp_path)
+    *_, told = cli(*grid)[1].splitlines()
+    assert told == f"{before}{runs * len(log) / 1e6:.0f} MB of logs, if all are as the first"
+    rows = tuple("rows" if each == keep else each for each in grid)
+    assert cli(*rows)[1].splitlines()[-1] == "no logs are kept"
+
+
 def test_bad_input_is_one_line_and_nothing_is_written(cli, tmp_path):
     out = tmp_path / "out"
     for arguments, message in [

@@ -10,7 +10,7 @@ from pathlib import Path
 from rotctl.log import LOG_NAME
 from rotctl.results import index
 from rotctl.run import make
-from rotctl.sweep.keep import Keep
+from rotctl.sweep.keep import NEVER, Keep
 from rotctl.sweep.launch import Tally
 from rotctl.sweep.plan import Plan, Planned, suffices
 from rotctl.sweep.progress import duration
@@ -22,7 +22,7 @@ TRIAL = 2.0  # [s] of simulated time, to estimate the whole
 def without_running(
     runs: list[Planned], folder: Path, workers: int, keep: Keep, points: int
 ) -> str:
-    """What there is to do, with an estimate of the time from a short trial of the first run.
+    """What there is to do, with estimates of time and disk from a short trial of the first run.
 
     Args:
         points: of the grid.
@@ -47,12 +47,22 @@ def without_running(
         rate = config.controller.rate
         short = replace(config, duration=min(config.duration, round(TRIAL * rate) / rate))
         begin = time.perf_counter()
-        make(short)
+        log = make(short).log
         cost = (time.perf_counter() - begin) / short.duration
         seconds = cost * sum(run.config.duration for run in left) / max(1, workers)
         on = f"{max(1, workers)} worker{'s' * (workers > 1)}"
         lines.append(f"about {duration(seconds)} on {on}, if they are as fast as this machine")
+        stored = sum(run.config.duration for run in left if wish(run.run_id) != NEVER)
+        most = "up to " if keep.mode == "failures" else ""
+        size = _size(len(log) / short.duration * stored)
+        told = f"{most}about {size} of logs, if all are as the first"
+        lines.append(told if stored else "no logs are kept")
     return "\n".join(lines)
+
+
+def _size(count: float) -> str:
+    """Bytes for people."""
+    return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{max(1.0, count / 1e6):.0f} MB"
 
 
 def at_the_start(plan: Plan, folder: Path, where: str, points: int, runs: int) -> str:
