@@ -164,7 +164,7 @@ def test_metrics_of_ones_own_are_columns(made, tmp_path, capsys, monkeypatch):
     stdout, stderr = capsys.readouterr()
     assert "by these criteria" not in stdout, "none were given"
     assert "top" in stdout
-    assert stderr == ""
+    assert stderr == "2 runs: metric late: is nan, an empty cell\n"
     rows = list(csv.DictReader(io.StringIO((made / "judged.csv").read_text())))
     for row in rows:
         log = RunLog.open(made / row["log"])
@@ -181,6 +181,12 @@ def test_the_command_line_goes_before_a_file_of_metrics(made, tmp_path, monkeypa
     assert main(["judge", str(made), *given]) == 0
     rows = csv.DictReader(io.StringIO((made / "judged.csv").read_text()))
     assert {(float(row["a"]), float(row["b"])) for row in rows} == {(3.0, 2.0)}
+
+
+def test_a_metric_that_is_infinite_is_told(made, capsys, monkeypatch):
+    without_processes(monkeypatch)
+    assert main(["judge", str(made), "--metric", "late=1/0"]) == 0
+    assert capsys.readouterr().err == "2 runs: metric late: is inf, an empty cell\n"
 
 
 def test_a_metric_that_some_runs_lack_is_told(tmp_path, capsys, monkeypatch):

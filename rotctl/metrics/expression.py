@@ -164,7 +164,13 @@ def _require(shown: str, node: ast.AST, called: bool, argument: bool) -> None:
 def _require_function(shown: str, node: ast.Call) -> None:
     """Raises InputError for a call of no function, or with arguments that it has not."""
     valid = [*FUNCTIONS, *LOOKED_UP]
-    name = node.func.id if isinstance(node.func, ast.Name) else ""
+    if not isinstance(node.func, ast.Name):
+        called = f"{ast.unparse(node.func):.60}"
+        right = "such as max(com[:, 2]) is"
+        if isinstance(node.func, ast.Attribute) and node.func.attr in valid:
+            right = f"write {node.func.attr}({ast.unparse(node.func.value):.60})"
+        raise InputError(f"{shown}: {called}(...) is no function; {right}")
+    name = node.func.id
     if name not in valid:
         raise InputError(f"{shown}: no function {name!r:.60}; {instead(name, valid)}")
     texts = [isinstance(arg, ast.Constant) and isinstance(arg.value, str) for arg in node.args]

@@ -51,10 +51,16 @@ class Question:
 
 
 class Answer(NamedTuple):
-    """A summary row with its metrics, and why a metric has no value."""
+    """A summary row with its metrics.
+
+    Attributes:
+        complaints: why a metric cannot be computed.
+        remarks: which metric is no finite number, as one of nothing, or by 0, is.
+    """
 
     summary: Summary
     complaints: tuple[str, ...]
+    remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -140,7 +146,7 @@ def answer(question: Question) -> Answer:
     """
     log = RunLog.open(question.log, linked=False)
     summary = judged_again(log, check(dict(question.config)))
-    complaints = []
+    complaints, remarks = [], []
     for metric in question.metrics:
         if metric.name in summary:
             raise InputError(_taken(metric))
@@ -149,8 +155,11 @@ def answer(question: Question) -> Answer:
         except InputError as error:
             value = math.nan
             complaints.append(str(error))
+        else:
+            if not math.isfinite(value):
+                remarks.append(f"metric {metric.name}: is {value}, an empty cell")
         summary[metric.name] = value if math.isfinite(value) else None  # as JSON has it
-    return Answer(summary, tuple(complaints))
+    return Answer(summary, tuple(complaints), tuple(remarks))
 
 
 def judge(
@@ -192,6 +201,7 @@ def judge(
     before = {run.run_id: bool(run.outcome["success"]) for run, _ in asked}
     questions = [question for _, question in asked]
     complaints: Counter[str] = Counter()
+    remarks: Counter[str] = Counter()
     with closing(engine.map(answer, questions, retries=2)) as results:
         for index, result in results:
             run = asked[index][0]
@@ -201,6 +211,7 @@ def judge(
                 of = questions[index].config
                 found[run.run_id] = replace(run, outcome=result.summary, config=of)
                 complaints.update(result.complaints)
+                remarks.update(result.remarks)
             progress()
     if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
         raise InputError(f"{folder}: no run can be judged: {found[asked[0][0].run_id].reason}")
@@ -208,6 +219,7 @@ def judge(
         if count == len(asked):
             raise InputError(complaint)
         notes.append(f"{count} runs: {complaint}")
+    notes += [f"{count} runs: {remark}" for remark, count in remarks.items()]
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
     notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]
