@@ -495,7 +495,9 @@ def test_runs_that_are_the_same_to_the_bit_are_told(sweep, tmp_path):
     report(sweep, tmp_path / "site")
     text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
     assert "100 % [21, 100] of 3 runs 1 distinct" in text
-    assert "3 runs, 1 distinct" in text
+    told = "decline: 3 runs, 1 distinct, as many as its interval is of"
+    assert told in text
+    assert f"> {told}" in (tmp_path / "site" / "summary.md").read_text()
     assert "6 runs, 2 distinct" in Page(tmp_path / "site" / "sweeps" / "table.html").text
 
 

@@ -137,7 +137,17 @@ def untested(found: Iterable[Line]) -> list[str]:
 
 def warnings(study: Study) -> list[str]:
     """What a reader of the verdicts must know first."""
-    return [*_few(study), *untested(lines([study]))]
+    return [*_few(study), *_same(study), *untested(lines([study]))]
+
+
+def _same(study: Study) -> list[str]:
+    """In which rows runs are the same to the bit, one line each."""
+    rates = [(row.name, row.metrics[SUCCESS_RATE]) for row in study.rows]
+    return [
+        f"{name}: {rate.runs} runs, {rate.distinct} distinct, as many as its interval is of"
+        for name, rate in rates
+        if rate.distinct < rate.runs
+    ]
 
 
 def _few(study: Study) -> list[str]:
