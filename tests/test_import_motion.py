@@ -181,6 +181,17 @@ def test_a_flight_takes_off_and_lands(first, last, found):
     assert len(flights(adult(), times, positions, ADULT_LEG)) == found
 
 
+@pytest.mark.parametrize(("height", "found"), [(0.2, 0), (0.3, 1)])
+def test_what_is_lifted_by_other_proportions_is_no_flight(height, found):
+    """The roll of a body of 1.55 m, exported and put on the adult, came to 0.21 m."""
+    times = np.arange(-0.3, 1.1, 1 / 60)
+    roll = in_order("forward_roll", turns=1.0, frames=2)[0]
+    positions = np.repeat(roll[None], len(times), axis=0)
+    flying = np.clip(times, 0.0, 0.8)
+    positions[:, 2] += height * flying * (0.8 - flying) / 0.16
+    assert len(flights(adult(), times, positions, ADULT_LEG)) == found
+
+
 def _centre(position):
     mj = adult().mj
     data = mujoco.MjData(mj)

@@ -12,7 +12,9 @@ from rotctl.rotations import Array
 GRAVITY = 9.81  # [m/s2]
 ADULT_LEG = 0.86  # [m] the actor's, hip to knee to ankle: no file says how tall he was
 OFF_GROUND = 0.06  # [m] from there on the body flies: captures sink and float by centimetres
-LEAST_HEIGHT = 0.15  # [m] a flight must reach, or it is an error of the capture
+# [m] A flight must reach it: an error of the capture does not, nor who rolls with limbs of other
+# lengths than the character has, which lift it by 0.2 m where it should lie on its back.
+LEAST_HEIGHT = 0.25
 LEAST_FRAMES = 5
 TOLERANCE = 0.25  # of 9.81: what the actor's unknown height explains, and some more
 
