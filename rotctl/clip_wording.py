@@ -92,7 +92,10 @@ def _clock(flight: "Flight") -> str:
         f"the flight from {flight.start:.2f} to {flight.end:.2f} s falls at {flight.fall:.1f} m/s2"
     )
     if flight.fall < _FALLS:
-        return f"{said}, not 9.81: is it a flight, is up up, do the hips move? See --up"
+        return (
+            f"{said}, not 9.81: is it a flight, is up up, do the hips move, is the rate right? "
+            "See --up and --rate"
+        )
     return (
         f"{said}, not 9.81: the file's clock runs {flight.haste:.2f} times as fast as the motion "
         "did; see --rate"

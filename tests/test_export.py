@@ -230,6 +230,16 @@ def test_a_model_that_is_none_is_not_exported():
         mjcf("<mujoco><include file='/etc/passwd'/></mujoco>")
 
 
+def test_a_table_without_a_rate_is_told_with_it(log, tmp_path, capsys):
+    path = tmp_path / "a.csv"
+    for to, out in (("csv", path), ("bvh", tmp_path / "a.bvh")):
+        assert main(["export", str(log.path), "--to", to, "--out", str(out)]) == 0
+        said = capsys.readouterr()
+        assert said.out == f"{out}\n"
+        told = "rotctl: 60 rows a second, which a .csv does not say; import-motion --rate 60\n"
+        assert said.err == (told if to == "csv" else "")
+
+
 def test_an_ending_must_be_right(log, tmp_path, capsys):
     out = tmp_path / "a.txt"
     assert main(["export", str(log.path), "--to", "gltf", "--out", str(out)]) == 2

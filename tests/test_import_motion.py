@@ -11,10 +11,11 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from rotctl.cli import main
+from rotctl.clip_wording import _clock
 from rotctl.config import load
 from rotctl.listing import conf_dir
 from rotctl.motion import load_clip
-from rotctl.motion.flight import ADULT_LEG, flights
+from rotctl.motion.flight import ADULT_LEG, Flight, flights
 from rotctl.motion.importing import import_motion
 from rotctl.motion.preview import motion_of
 from rotctl.motion.reading import read_capture
@@ -179,6 +180,12 @@ def test_a_flight_takes_off_and_lands(first, last, found):
     flying = np.clip(times, 0.0, 0.8)
     positions[:, 2] += 9.81 * flying * (0.8 - flying) / 2
     assert len(flights(adult(), times, positions, ADULT_LEG)) == found
+
+
+def test_who_hardly_falls_is_asked_for_the_rate_too():
+    """A .csv of 240 rows a second, read as 30, falls at 0.15 m/s2."""
+    told = _clock(Flight(1.0, 3.0, 9.81 / 8**2))
+    assert told.endswith("is up up, do the hips move, is the rate right? See --up and --rate")
 
 
 @pytest.mark.parametrize(("height", "found"), [(0.2, 0), (0.3, 1)])

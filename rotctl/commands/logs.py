@@ -1,6 +1,7 @@
 """What is in a log: `render`, `replay`, `plot`, `inspect`, `verify`."""
 
 import argparse
+import sys
 from pathlib import Path
 
 from rotctl.bars import bar, following
@@ -157,7 +158,13 @@ def export(arguments: argparse.Namespace) -> int:
     from rotctl.export import export
     from rotctl.log import RunLog
 
-    print(export(RunLog.open(log_file(arguments.log)), arguments.to, arguments.out))
+    log = RunLog.open(log_file(arguments.log))
+    print(export(log, arguments.to, arguments.out))
+    time = log["trajectory/time"]
+    if arguments.to == "csv" and len(time) > 1:  # the one format that has no place for it
+        rate = f"{(len(time) - 1) / float(time[-1] - time[0]):.6g}"
+        said = f"{rate} rows a second, which a .csv does not say; import-motion --rate {rate}"
+        print(f"rotctl: {said}", file=sys.stderr)
     return 0
 
 
