@@ -99,11 +99,12 @@ def test_what_cannot_alight_is_refused():
     for limbs, said in {
         "{foot:[waist_y]}": "foot: waist_y is of no limb on either side",
         "{foot:[hip]}": "names the unknown joint 'hip'",
-        "{paw:[hip_x]}": "paw",
+        "{paw:[hip_x]}": "names the unknown body 'paw'",
+        "{foot_l:[hip_x]}": "foot_l is one body; name a limb that both sides have",
         "{foot:[hip_x,shoulder_x]}": "foot: shoulder_x_l does not move it",
     }.items():
         with pytest.raises(InputError, match=said):
-            build(load([f"behaviour.alighting.limbs={limbs}"]))
+            build(load([f"+behaviour.alighting.limbs={limbs}"]))
 
 
 ASKED = [

@@ -15,7 +15,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
-from rotctl.mechanics.bodies import ROOT_BODY, SIDES, body_id
+from rotctl.mechanics.bodies import ROOT_BODY, SIDES, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.rotations import Array, crossed, dotted
@@ -58,7 +58,7 @@ class Alighting:
         """For both sides of a body.
 
         Raises:
-            InputError: there is no such body or joint, or the joint does not move the body.
+            InputError: there is no such limb or joint, or the joint does not move the limb.
         """
         self.settings, mj = settings, model.mj
         joints = mj.actuator_trnid[:, 0].tolist()
@@ -66,8 +66,10 @@ class Alighting:
         for limb, names in settings.limbs.items():
             key = f"behaviour.alighting.limbs.{limb}"
             pairs = [self._pair(name, model, key) for name in names if model.motors(name, key)]
-            for i, side in enumerate(SIDES):
-                body = body_id(mj, limb + side, key)
+            both = body_ids(mj, [limb], key)
+            if len(both) < len(SIDES):
+                raise InputError(f"{key}: {limb} is one body; name a limb that both sides have")
+            for i, body in enumerate(both):
                 own = [(pair[i], joints[pair[i]]) for pair in pairs]
                 for motor, joint in own:
                     if joint not in _moving(mj, body):
