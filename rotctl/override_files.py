@@ -53,6 +53,11 @@ def of_file(path: Path) -> list[Line]:
     if path.suffix not in (".yaml", ".yml"):
         raise InputError(f"{MARK}{path}: must be the name of a .yaml file of overrides")
     data, lines = documents.read_with_lines(path)
+    if isinstance(data, dict) and "name" in data:  # no key of a config
+        use = "GROUP=NAME, where it is conf/GROUP/NAME.yaml"
+        if "roll_about" in data and "joints" in data:
+            use = f"behaviour.reference.clip={path} of a behaviour that follows one"
+        raise InputError(f"{path}: is a choice by itself, not a file of overrides; give {use}")
     found = [Line(text, f"{path}:{lines[way]}") for way, text in _overrides(path, data, lines)]
     if len(found) > MOST:
         raise InputError(f"{path}: has {len(found)} overrides; at most {MOST} are read")

@@ -215,7 +215,7 @@ def adopted(found: "Adopted") -> str:
         for joint in body.get("joints", ()):
             low, high = joint["range"]
             lines.append(
-                f"  {joint['name']:16} {found.joints[joint['name']]}; {low:.2f} to {high:.2f}, "
+                f"  {joint['name']:16} {found.joints[joint['name']]}; {low:z.2f} to {high:z.2f}, "
                 f"{joint['torque']:g}"
             )
     if made["absent"]:

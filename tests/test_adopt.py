@@ -195,6 +195,13 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     assert "--map left_hip=no: no such body; its bodies: " in capsys.readouterr().err
 
 
+def test_a_limit_at_zero_has_no_sign(tmp_path, capsys):
+    path = tmp_path / "robot.xml"
+    path.write_text(text(**{'range="-150 2"': 'range="-150 0"'}))
+    assert main(["inspect-model", str(path)]) == 0
+    assert "  knee             left_knee; 0.00 to 2.62, 80\n" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("changes", "complaint"),
     [

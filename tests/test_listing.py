@@ -21,6 +21,7 @@ def test_every_choice_has_one_line_of_description():
             assert description, f"{group}={choice}"
             assert "\n" not in description
             assert len(description) < 120, f"{group}={choice}"
+            assert description.endswith((".", "?", ".md")), f"{group}={choice}: is cut off"
 
 
 def test_the_choices_of_one_group():

@@ -109,6 +109,15 @@ def test_a_model_lies_beside_the_file_that_names_it(here, content):
         ("hydra: {run: {dir: x}}\n", "mine.yaml:1: override 'hydra.run.dir=x': Hydra's own "),
         ("- 'character={file: a'\n", "mine.yaml:1: override 'character={file: a': cannot be read"),
         ("seed=3\n", "mine.yaml: must be a mapping of keys, or a list of overrides"),
+        (
+            "name: a\nroll_about: left\nsource: roll.bvh, 0.067 to 1.150 s\njoints: {}\n",
+            "mine.yaml: is a choice by itself, not a file of overrides; give "
+            "behaviour.reference.clip=mine.yaml of a behaviour that follows one\n",
+        ),
+        (
+            "name: a\nkind: push\ndescription: One push, from any side.\n",
+            "mine.yaml: is a choice by itself, not a file of overrides; give GROUP=NAME, ",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(here, capsys, content, said):
