@@ -13,10 +13,11 @@ from rotctl.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
+from rotctl.metrics.halts import going
 from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
-from rotctl.report.happenings import happenings
+from rotctl.report.happenings import halts, happenings
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
 from rotctl.run import LOG_NAME, run
@@ -281,6 +282,20 @@ def test_a_roll_that_stalls_is_shown_as_it_comes_to_that(log, tmp_path):
     wrench[:] = 0.0
     wrench[420:426, 0] = 50.0  # long after it stalled
     assert shown(False) == pytest.approx((3.5, 6.0), abs=0.11)
+
+
+def test_a_halt_that_is_told_is_no_stall(log, tmp_path):
+    """From 2 to 6 s it stands as it is told to; at 8 s it stalls."""
+    time = np.arange(660) / 60
+    turns = np.minimum(time, 2.0) + np.clip(time - 6.0, 0.0, 2.0)
+    told = np.ones(660, dtype=bool)
+    assert module._failing(time, turns, [], told)[0] == pytest.approx(90, abs=7)
+    rolls = going(time, [(2.0, 6.0)])
+    assert module._failing(time, turns, [], rolls)[0] == pytest.approx(450, abs=7)
+    assert module._failing(time, turns, [], ~told) is None
+    config = "behaviour: {pace: {schedule: [[2, 0], [6, 0.5], [9, 0]]}}"
+    assert halts(changed(log, tmp_path, config=config)) == [(2.0, 6.0), (9.0, np.inf)]
+    assert halts(log) == []
 
 
 @pytest.mark.parametrize(

@@ -5,17 +5,19 @@ from io import BytesIO
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.columns import heading
+from rotctl.metrics.halts import going
 from rotctl.metrics.turning import longest_stall
 from rotctl.report import gl, stored_model
 from rotctl.report.character import FORCE_SCALE
 from rotctl.report.frame import PAPER, Moment, draw, moments, turns_done
-from rotctl.report.happenings import happenings
+from rotctl.report.happenings import halts, happenings
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet
 from rotctl.report.skill import BEFORE, Part, first_push, parts
@@ -120,7 +122,9 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     # It may have broken down before it was pushed.
     events = sorted([*changed, *([] if pushed is None or pushed >= len(time) else [pushed])])
     turns = turns_done(log)[: len(time)]
-    shown = _failing(time, turns, events) if verdict(log.outcome)[0] is False else None
+    shown = None
+    if verdict(log.outcome)[0] is False:
+        shown = _failing(time, turns, events, going(time, halts(log)))
     if shown is None:
         since = max(SETTLED, float(time[events[0]]) - BEFORE) if events else SETTLED
         shown = _two_turns(time, turns, since)
@@ -129,20 +133,24 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     return spread(log, [Part(*(shown or (0, len(time) - 1)), 1.0)], frames, changed)
 
 
-def _failing(time: Array, turns: Array, events: Sequence[int]) -> tuple[int, int] | None:
+def _failing(
+    time: Array, turns: Array, events: Sequence[int], rolls: NDArray[np.bool_]
+) -> tuple[int, int] | None:
     """Rows of how a roll came to its longest stall, and what followed; None if it never stalled.
 
     Args:
         turns: done by each row (n,) [rev].
         events: rows in which something happened, in order. What did in the two revolutions before
             is shown, too.
+        rolls: whether it is to roll in each row: who halts where he is told to does not stall.
     """
     period = float(time[-1] - time[0]) / max(len(time) - 1, 1)
     progress = np.abs(turns)
-    lasted, begin = longest_stall(progress, STALLED, period)
+    asked = np.flatnonzero(rolls)
+    lasted, begin = longest_stall(progress[asked], STALLED, period) if len(asked) else (0.0, 0.0)
     if lasted < LONG:
         return None
-    stalls, furthest = round(begin / period), np.maximum.accumulate(progress)
+    stalls, furthest = int(asked[round(begin / period)]), np.maximum.accumulate(progress)
     first, early = (
         int(np.searchsorted(furthest, furthest[stalls] - turn)) for turn in (LEADS, DEFAULT_TURNS)
     )

@@ -1,6 +1,7 @@
 """What happens in a run that no force tells: a load taken up, slippery ground, another command."""
 
 import re
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from rotctl.documents import from_yaml
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.plain import find
+from rotctl.plain import NOTHING, find
 from rotctl.report.title import plain
 
 # What `rotctl.mechanics.changes` tells; other events are of solvers.
@@ -40,12 +41,23 @@ def happenings(log: RunLog) -> list[Happening]:
     )
 
 
+def halts(log: RunLog) -> list[tuple[float, float]]:
+    """When a roll is told to halt, and until when [s]."""
+    told = _schedule(_behaviour(log), "pace")
+    ends = [*(time for time, _ in told[1:]), inf]
+    return [(time, end) for (time, value), end in zip(told, ends, strict=False) if not value]
+
+
+def _behaviour(log: RunLog) -> Any:
+    try:
+        return find(from_yaml("config", log.config_yaml), ("behaviour",))
+    except InputError:
+        return NOTHING
+
+
 def _commands(log: RunLog) -> list[tuple[float, str]]:
     """When a roll is told something else, and what; parts of a chain tell nothing."""
-    try:
-        behaviour = find(from_yaml("config", log.config_yaml), ("behaviour",))
-    except InputError:
-        return []
+    behaviour = _behaviour(log)
     unit = "m/s" if find(behaviour, ("pace", "keep")) == "speed" else "rev/s"
     found = [
         (time, f"told {value:g} {unit}" if value else "told to halt")
