@@ -15,7 +15,7 @@ RATES = [(30, 8), (60, 4), (120, 2), (240, 1)]  # [Hz], physics steps a control 
 @pytest.mark.parametrize(("rate", "substeps"), RATES)
 @pytest.mark.parametrize("behaviour", ["forward_roll_1", "backward_roll_1"])
 def test_it_rolls_at_any_rate(rate, substeps, behaviour):
-    """The physics' own step is the same. Two of three starts turn so far in 4 s, or more of them."""
+    """The physics' own step is the same. Of three starts two or more turn so far in 4 s."""
     rates = [f"controller.rate={rate}", f"physics.substeps={substeps}"]
     turns = []
     for seed in (2000, 2001, 2002):

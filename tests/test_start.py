@@ -166,7 +166,10 @@ def test_a_posture_leaves_the_other_draws_alone(world):
 @pytest.mark.parametrize("ground", ["flat", "decline"])
 def test_still_is_at_rest_on_the_ground_for_every_roll(about, ground):
     made = scenario.build(
-        load(["start=still", f"behaviour.roll_about={about}", f"terrain={ground}", "seed=2"])
+        load(
+            ["start=still", "behaviour.alighting=null", f"behaviour.roll_about={about}"]
+            + [f"terrain={ground}", "seed=2"]
+        )
     )
     mj, data = made.model.mj, Episode(made).data
     assert not data.qvel.any()
