@@ -43,6 +43,8 @@ def complaint(chosen, changes):
     [
         (STAND, {"behaviour.tasks.balance.kind": "jump"},
          f"behaviour.tasks.balance: no kind 'jump'; valid: {', '.join(KINDS)}"),
+        (STAND, {"behaviour.target_excursion": 90.0},
+         "behaviour: target_excursion=90: stand is a motion of 0 deg"),
         (STAND, {"behaviour.tasks.pelvis.point": [0.1, 0.0, 0.0]},
          "behaviour.tasks.pelvis: a task of kind attitude has no point"),
         (STAND, {"behaviour.tasks.limits.point": [0.036, 0.1, 0.0]},
