@@ -54,6 +54,8 @@ def require_placed(overrides: list[Override]) -> None:
 def _complaint(override: Override, valid: dict[str, Any]) -> str:
     """Why an override does not fit a config; empty if it does."""
     key = str(override.key_or_group)
+    if override.is_delete() and choices(key) and package(key) != key:
+        return f"{key} is no part of a config; leave out what it adds by {package(key)}=null"
     if choices(key) and key not in valid:
         return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
     if override.package:
@@ -74,7 +76,7 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
             return unknown_key(key, dotted(parts[:depth]), keys_under(place))
         place = inner
     if override.is_delete():
-        return ""
+        return f"~{key}: nothing is there to leave out" if place is None else ""
     value = override.value()
     if override.is_add():
         return f"{key} is there already; write {key}=VALUE"

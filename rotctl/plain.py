@@ -76,8 +76,7 @@ def put(data: Any, parts: Way, value: Any) -> Any:
 
 def keys_under(place: Any) -> list[str]:
     """The keys under a place in plain data, of a list its numbers; where there are none, why."""
-    if isinstance(place, dict):
-        return list(place)
-    if isinstance(place, list | tuple) and place:
-        return [f"0 to {len(place) - 1}"]
+    if isinstance(place, dict | list | tuple):
+        names = list(place) if isinstance(place, dict) else [f"0 to {len(place) - 1}"]
+        return names if place else ["none, it is empty"]
     return [f"none, it is {'null' if place is None else 'a value'}"]

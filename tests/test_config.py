@@ -140,6 +140,12 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "finish=stand",
             "finish is no part of a config, its choices are added to one: write +finish=CHOICE",
         ),
+        ("~finish", "finish is no part of a config; leave out what it adds by behaviour.finish=null"),
+        ("~behaviour.finish", "~behaviour.finish: nothing is there to leave out"),
+        (
+            "start.postures.left=1",
+            "unknown key 'start.postures.left'; valid keys under start.postures: none, it is empty",
+        ),
         ("+reference=nope", 'reference="nope": no such choice; valid: humanoid3d_roll'),
         ("~physics", "physics: missing, it cannot be left out"),
         # Choices.
