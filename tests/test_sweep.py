@@ -1,5 +1,6 @@
 """The sweep command: what it does, reuses, sets aside and says."""
 
+import errno
 import json
 import os
 from pathlib import Path
@@ -182,6 +183,18 @@ def test_a_second_sweep_is_refused_while_the_first_lives(cli, tmp_path):
         )
     with locked(tmp_path):  # free again
         pass
+
+
+def test_a_disk_without_locks_is_said_and_used(cli, tmp_path, monkeypatch):
+    def none(*_):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", none)
+    code, _, stderr = cli("sweep", BRIEF, "--out", tmp_path, "--jobs", "1", "--quiet")
+    assert code == 0
+    assert stderr == (
+        f"rotctl: {tmp_path}: its disk knows no locks; start no second sweep or search there\n"
+    )
 
 
 # ---------------------------------------------------------------- reuse

@@ -85,7 +85,9 @@ def sweep(arguments: argparse.Namespace) -> int:
         if arguments.dry_run:
             print(without_running(runs, out, engine.workers, kept, count(matrix)))
             return 0
-        with locked(out):
+        with locked(out) as notice:
+            if notice:
+                print(f"rotctl: {one_line(notice)}", file=sys.stderr)
             if experiment:
                 experiments.copy_into(out, experiment)
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:

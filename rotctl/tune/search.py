@@ -121,7 +121,9 @@ def tune(
     space = search.space
     data = variations(space, search.overrides)
     start = start_values(space, data[0])
-    with locked(folder):
+    with locked(folder) as notice:
+        if notice:
+            watch.line(notice)
         history = open_history(folder, space, _identity(search, data))
         evaluator = Evaluator(space, data, engine, watch.tick)
         done = _searched(search, start, evaluator, history, budget, watch.line)
