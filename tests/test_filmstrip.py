@@ -17,7 +17,7 @@ from rotctl.metrics.halts import going
 from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
-from rotctl.report.happenings import halts, happenings
+from rotctl.report.happenings import halts, happenings, stall
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
 from rotctl.run import LOG_NAME, run
@@ -289,13 +289,28 @@ def test_a_halt_that_is_told_is_no_stall(log, tmp_path):
     time = np.arange(660) / 60
     turns = np.minimum(time, 2.0) + np.clip(time - 6.0, 0.0, 2.0)
     told = np.ones(660, dtype=bool)
-    assert module._failing(time, turns, [], told)[0] == pytest.approx(90, abs=7)
+    usual = stall(log)
+    assert module._failing(time, turns, [], told, usual)[0] == pytest.approx(90, abs=7)
     rolls = going(time, [(2.0, 6.0)])
-    assert module._failing(time, turns, [], rolls)[0] == pytest.approx(450, abs=7)
-    assert module._failing(time, turns, [], ~told) is None
+    assert module._failing(time, turns, [], rolls, usual)[0] == pytest.approx(450, abs=7)
+    assert module._failing(time, turns, [], rolls, (0.1, 5.0)) is None
+    assert module._failing(time, turns, [], ~told, usual) is None
     config = "behaviour: {pace: {schedule: [[2, 0], [6, 0.5], [9, 0]]}}"
     assert halts(changed(log, tmp_path, config=config)) == [(2.0, 6.0), (9.0, np.inf)]
     assert halts(log) == []
+
+
+@pytest.mark.parametrize(
+    ("criteria", "found"),
+    [
+        ("criteria: {stall_progress: 0.2, stall_time: 3}", (0.2, 3.0)),
+        ("criteria: {roll: {stall_time: 2.5}}", (0.1, 2.5)),
+        ("criteria: {stall_time: soon}", (0.1, 1.5)),
+        ("criteria: 3", (0.1, 1.5)),
+    ],
+)
+def test_a_stall_is_what_the_criteria_of_the_run_say(criteria, found, log, tmp_path):
+    assert stall(changed(log, tmp_path, config=criteria)) == found
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from rotctl.metrics.turning import longest_stall
 from rotctl.report import gl, stored_model
 from rotctl.report.character import FORCE_SCALE
 from rotctl.report.frame import PAPER, Moment, draw, moments, turns_done
-from rotctl.report.happenings import halts, happenings
+from rotctl.report.happenings import halts, happenings, stall
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet
 from rotctl.report.skill import BEFORE, Part, first_push, parts
@@ -31,7 +31,6 @@ OVERSAMPLING = 2  # frames are drawn this much larger: smooth edges without mult
 MAX_COLUMNS = 6
 SETTLED = 2.0  # [s] by default the strip starts here
 DEFAULT_TURNS = 2.0  # [rev] and lasts so long
-STALLED, LONG = 0.1, 1.5  # [rev] less in so many s, and a roll stalls, as its usual criteria say
 LEADS, FOLLOWS = 0.5, 2.0  # [rev, s] that are shown before a stall, and of it
 SMALL = 1_500_000  # [bytes] a larger picture is reduced to 256 colours
 
@@ -124,7 +123,7 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
     turns = turns_done(log)[: len(time)]
     shown = None
     if verdict(log.outcome)[0] is False:
-        shown = _failing(time, turns, events, going(time, halts(log)))
+        shown = _failing(time, turns, events, going(time, halts(log)), stall(log))
     if shown is None:
         since = max(SETTLED, float(time[events[0]]) - BEFORE) if events else SETTLED
         shown = _two_turns(time, turns, since)
@@ -134,7 +133,11 @@ def _rows(log: RunLog, frames: int, start: float | None, end: float | None) -> l
 
 
 def _failing(
-    time: Array, turns: Array, events: Sequence[int], rolls: NDArray[np.bool_]
+    time: Array,
+    turns: Array,
+    events: Sequence[int],
+    rolls: NDArray[np.bool_],
+    stall: tuple[float, float],
 ) -> tuple[int, int] | None:
     """Rows of how a roll came to its longest stall, and what followed; None if it never stalled.
 
@@ -143,12 +146,14 @@ def _failing(
         events: rows in which something happened, in order. What did in the two revolutions before
             is shown, too.
         rolls: whether it is to roll in each row: who halts where he is told to does not stall.
+        stall: less progress [rev] in so long [s].
     """
+    least, lasting = stall
     period = float(time[-1] - time[0]) / max(len(time) - 1, 1)
     progress = np.abs(turns)
     asked = np.flatnonzero(rolls)
-    lasted, begin = longest_stall(progress[asked], STALLED, period) if len(asked) else (0.0, 0.0)
-    if lasted < LONG:
+    lasted, begin = longest_stall(progress[asked], least, period) if len(asked) else (0.0, 0.0)
+    if lasted < lasting:
         return None
     stalls, furthest = int(asked[round(begin / period)]), np.maximum.accumulate(progress)
     first, early = (

@@ -15,6 +15,7 @@ from rotctl.report.title import plain
 # What `rotctl.mechanics.changes` tells; other events are of solvers.
 _CHANGES = re.compile(r"\S+ takes up \S+ kg|the ground has \S+ of its friction")
 _NUMBER = (int, float)
+_STALL = {"stall_progress": 0.1, "stall_time": 1.5}  # [rev, s] of the usual criteria
 
 
 class Happening(NamedTuple):
@@ -43,21 +44,33 @@ def happenings(log: RunLog) -> list[Happening]:
 
 def halts(log: RunLog) -> list[tuple[float, float]]:
     """When a roll is told to halt, and until when [s]."""
-    told = _schedule(_behaviour(log), "pace")
+    told = _schedule(_config(log, "behaviour"), "pace")
     ends = [*(time for time, _ in told[1:]), inf]
     return [(time, end) for (time, value), end in zip(told, ends, strict=False) if not value]
 
 
-def _behaviour(log: RunLog) -> Any:
+def stall(log: RunLog) -> tuple[float, float]:
+    """Less progress [rev] in so long [s] is one, by the run's criteria."""
+    criteria = _config(log, "criteria")
+    rolls = find(criteria, ("roll",))  # of one that ends on its feet
+    told = [find(criteria if rolls is NOTHING else rolls, (key,)) for key in _STALL]
+    least, lasting = (
+        float(one) if isinstance(one, _NUMBER) else usual
+        for one, usual in zip(told, _STALL.values(), strict=True)
+    )
+    return least, lasting
+
+
+def _config(log: RunLog, part: str) -> Any:
     try:
-        return find(from_yaml("config", log.config_yaml), ("behaviour",))
+        return find(from_yaml("config", log.config_yaml), (part,))
     except InputError:
         return NOTHING
 
 
 def _commands(log: RunLog) -> list[tuple[float, str]]:
     """When a roll is told something else, and what; parts of a chain tell nothing."""
-    behaviour = _behaviour(log)
+    behaviour = _config(log, "behaviour")
     unit = "m/s" if find(behaviour, ("pace", "keep")) == "speed" else "rev/s"
     found = [
         (time, f"told {value:g} {unit}" if value else "told to halt")
