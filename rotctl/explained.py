@@ -54,9 +54,11 @@ def require_placed(overrides: list[Override]) -> None:
 def _complaint(override: Override, valid: dict[str, Any]) -> str:
     """Why an override does not fit a config; empty if it does."""
     key = str(override.key_or_group)
-    if override.is_delete() and choices(key) and package(key) != key:
-        return f"{key} is no part of a config; leave out what it adds by {package(key)}=null"
     if choices(key) and key not in valid:
+        if override.is_delete():
+            if find(valid, way(package(key))) in (NOTHING, None):
+                return f"{key} is no part of a config, and here it has added nothing to remove"
+            return f"{key} is no part of a config, what it has added is: write ~{package(key)}"
         return f"{key} is no part of a config, its choices are added to one: write +{key}=CHOICE"
     if override.package:
         return unknown_key(f"{key}@{override.package}", "", list(valid))

@@ -140,10 +140,7 @@ def test_a_key_that_may_be_missing_can_be_removed():
             "finish=stand",
             "finish is no part of a config, its choices are added to one: write +finish=CHOICE",
         ),
-        (
-            "~finish",
-            "finish is no part of a config; leave out what it adds by behaviour.finish=null",
-        ),
+        ("~finish", "finish is no part of a config, and here it has added nothing to remove"),
         ("~behaviour.finish", "~behaviour.finish: nothing is there to leave out"),
         (
             "start.postures.left=1",
