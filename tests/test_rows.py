@@ -98,6 +98,19 @@ def test_the_backward_roll_goes_over_its_hands(physics):
     assert np.median(hands.ends[..., 2].min(axis=1)) < 0.12
 
 
+def test_the_backward_roll_sits_back_with_its_feet_down():
+    """Without a contact as it does: 0.04 of the time, 0.6 with `controller=listening`."""
+
+    def aloft(seed):
+        buffer, _, _ = rolled("behaviour=backward_roll_2", f"seed={seed}")
+        turned = np.abs(buffer.trajectory.phase) / (2.0 * np.pi)
+        sits = (turned > 1.1) & (turned % 1.0 > 0.1) & (turned % 1.0 < 0.2)
+        assert sits.sum() > 10
+        return (buffer.contacts.count[sits] == 0).mean()
+
+    assert np.mean([aloft(seed) for seed in range(4)]) < 0.25
+
+
 def test_the_log_roll_stays_long():
     buffer, _, _ = rolled("behaviour=sideways_roll")
     joints = [str(np.char.decode(name)) for name in buffer.model.joint]
