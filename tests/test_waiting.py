@@ -61,6 +61,20 @@ def test_limbs_are_ready_before_it_is_braked_and_leave_when_it_does():
     assert at(0.0, 0.1).waits == 0.0, "who is late does not wait"
 
 
+def test_who_is_stopped_short_of_its_wait_takes_the_pose_late_or_not():
+    """By how much slower it turns than the motion by itself, and no further off than `approach`."""
+    settings = load(["behaviour=decline"]).behaviour.pace
+    pace, own = Pace(settings, 0.4, 1.0), settings.own
+
+    def waits(turn, turns):
+        return pace.at(2 * np.pi * (settings.wait + turn), 0.0, 0.1, 0.0, 0.0, turns * own).waits
+
+    assert (waits(0.0, 0.0), waits(0.0, 0.25), waits(0.0, 1.0)) == pytest.approx((1.0, 0.75, 0.0))
+    assert waits(0.0, -0.5) == 1.0, "who falls back has no more than all of it"
+    assert waits(-0.05, 0.0) == pytest.approx(waits(0.05, 0.0)) != 0.0
+    assert waits(-0.17, 0.0) == waits(0.17, 0.0) == 0.0
+
+
 @pytest.mark.parametrize("seed", [2000, 2001])
 def test_down_a_slope_it_waits_on_its_feet_with_its_head_up(seed):
     """Of the time that it is slow on the way, by where head, seat and feet are."""

@@ -54,7 +54,8 @@ class PaceSettings:
             in, and let who stands there sink onto the seat. None: it brakes as in any wait.
         pose: angles of joints that it takes while it waits, by their names; one without a side is
             both [rad]. On the way up from the seat they come to it from `width` before on, so that
-            the hands are there in time. None: its poses are those of its phase.
+            the hands are there in time, and within `approach` whoever turns too slowly has it, late
+            or not. None: its poses are those of its phase.
         schedule: times and what is commanded from then on in place of the kept velocity
             [s, rev/s or m/s]; at 0 it halts in the next squat.
     """
@@ -189,7 +190,15 @@ class Pace:
         """How far a phase [rad] is before the one in which it waits, at most half [rev]."""
         return (self.settings.wait - phase / tau + 0.5) % 1.0 - 0.5
 
-    def at(self, phase: float, ahead: float, late: float, time: float, goes: float = 0.0) -> Wanted:
+    def at(
+        self,
+        phase: float,
+        ahead: float,
+        late: float,
+        time: float,
+        goes: float = 0.0,
+        turns: float = inf,
+    ) -> Wanted:
         """What to ask for.
 
         Args:
@@ -198,6 +207,7 @@ class Pace:
             late: see `Clock` [rev].
             time: [s].
             goes: how fast it goes along the way [m/s].
+            turns: how fast it turns [rev/s].
         """
         s = self.settings
         turn = phase / tau
@@ -210,6 +220,7 @@ class Pace:
         base = flow * (1.0 + (max(share, 1.0) - 1.0) * here)
         rate = base * (1.0 - s.swing * cos(tau * (turn - s.swing_from)))
         speed = s.travel * base * (1.0 - s.surge * cos(tau * (turn - s.surge_from)))
+        slow = min(max(1.0 - turns / flow, 0.0), 1.0)
         reach = (s.approach if before > 0.0 else s.leave) or s.width
         waits = early * _near(before, reach)
         return Wanted(
@@ -217,7 +228,10 @@ class Pace:
             speed + waits * (s.settling[1] * (s.ahead - ahead) - speed),
             1.0 + waits * (self._brake(asked, goes) - 1.0),
             waits * s.back,
-            early * _near(before, s.width if before > 0.0 else reach),
+            max(
+                early * _near(before, s.width if before > 0.0 else reach),
+                slow * _near(before, s.approach or s.width),
+            ),
         )
 
     def _brake(self, asked: float, goes: float) -> float:

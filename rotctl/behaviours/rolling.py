@@ -141,7 +141,8 @@ class Rolling:
         if self._pace:
             ahead = self.ahead(memory, state)
             speed = float(dot(on.frame.axes[0], state.momentum.com_velocity))
-            wanted = self._pace.at(now.phase, ahead, memory.clock.late, state.time, speed)
+            rate = float(dot(on.frame.axes[1], state.momentum.angular_velocity)) / math.tau
+            wanted = self._pace.at(now.phase, ahead, memory.clock.late, state.time, speed, rate)
             self._velocities[0] = wanted.speed * on.way
             self._velocities[1] = math.tau * wanted.rate * on.left
             self._damping[:] = self._usual

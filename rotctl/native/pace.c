@@ -68,5 +68,6 @@ static void keep_pace(const Roll* r, const mjData* d, const Reading* now, RollMe
     r->task[1].damping[i] = p->usual[3 + i] * (i == 1 ? brake : 1);
   }
   *back = TURN * (waits * p->back);
-  *waiting = early * near(before, before > 0 ? p->width : p->leave);
+  double slow = fmin(fmax(1 - along(r->axes + 3, now->angular_velocity) / TURN / flow, 0), 1);
+  *waiting = fmax(early * near(before, before > 0 ? p->width : p->leave), slow * near(before, p->approach));
 }
