@@ -56,7 +56,8 @@ def _standing():
 def flier(turns, flight=HEAD_FIRST):
     """A scenario whose one real stage is a flight of so many whole turns about left."""
     data = {**_standing()}
-    data["behaviour"] = behaviour = {**data["behaviour"], "target_excursion": 360.0 * turns}
+    turn = {"target_excursion": 360.0 * turns, "targets": None}  # stand is a motion of 0 deg
+    data["behaviour"] = behaviour = {**data["behaviour"], **turn}
     tasks = {
         name: {"kind": "joints", "body": body, "gains": gains, "aim": {"law": "pose"}}
         for group, gains in ((LIMBS, "air"), (TRUNK, "air_torso"))

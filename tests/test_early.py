@@ -87,7 +87,7 @@ def test_a_flip_goes_through_all_of_them(duration, begins):
     ("overrides", "reason"),
     [
         (["behaviour=stand", "disturbance=push", "disturbance.impulse=300"], "touched the ground"),
-        (["behaviour=forward_roll_2", "behaviour.reference.clip=forward_roll"], "stalled for"),
+        (["behaviour=reference_roll", "behaviour.reference.clip=forward_roll"], "stalled for"),
     ],
 )
 def test_a_run_that_had_the_time_fails_for_its_own_reason(overrides, reason):
