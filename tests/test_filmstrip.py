@@ -306,6 +306,8 @@ def test_a_halt_that_is_told_is_no_stall(log, tmp_path):
         ("criteria: {stall_progress: 0.2, stall_time: 3}", (0.2, 3.0)),
         ("criteria: {roll: {stall_time: 2.5}}", (0.1, 2.5)),
         ("criteria: {stall_time: soon}", (0.1, 1.5)),
+        ("criteria: {stall_progress: .nan, stall_time: 0}", (0.1, 1.5)),
+        (f"criteria: {{stall_time: 1{400 * '0'}}}", (0.1, 1.5)),
         ("criteria: 3", (0.1, 1.5)),
     ],
 )

@@ -14,7 +14,7 @@ from rotctl.report.title import plain
 
 # What `rotctl.mechanics.changes` tells; other events are of solvers.
 _CHANGES = re.compile(r"\S+ takes up \S+ kg|the ground has \S+ of its friction")
-_NUMBER = (int, float)
+_LARGEST = 1e300
 _STALL = {"stall_progress": 0.1, "stall_time": 1.5}  # [rev, s] of the usual criteria
 
 
@@ -55,7 +55,7 @@ def stall(log: RunLog) -> tuple[float, float]:
     rolls = find(criteria, ("roll",))  # of one that ends on its feet
     told = [find(criteria if rolls is NOTHING else rolls, (key,)) for key in _STALL]
     least, lasting = (
-        float(one) if isinstance(one, _NUMBER) else usual
+        float(one) if _number(one) and one > 0 else usual
         for one, usual in zip(told, _STALL.values(), strict=True)
     )
     return least, lasting
@@ -78,7 +78,7 @@ def _commands(log: RunLog) -> list[tuple[float, str]]:
     ]
     found += [(time, f"told {rate:g} deg/s") for time, rate in _schedule(behaviour, "course")]
     end = find(behaviour, ("finish", "after"))
-    return found + ([(float(end), "told to end")] if isinstance(end, _NUMBER) else [])
+    return found + ([(float(end), "told to end")] if _number(end) else [])
 
 
 def _schedule(behaviour: Any, what: str) -> list[tuple[float, float]]:
@@ -86,5 +86,10 @@ def _schedule(behaviour: Any, what: str) -> list[tuple[float, float]]:
     return [
         (float(one[0]), float(one[1]))
         for one in (told if isinstance(told, list) else [])
-        if isinstance(one, list) and len(one) == 2 and all(isinstance(n, _NUMBER) for n in one)
+        if isinstance(one, list) and len(one) == 2 and all(map(_number, one))
     ]
+
+
+def _number(told: Any) -> bool:
+    """Whether it is a number that a float can hold; a stranger's log may tell anything."""
+    return isinstance(told, int | float) and abs(told) < _LARGEST
