@@ -121,7 +121,8 @@ class RollingMetrics:
         travel_most: longest of it [m].
         ground_force_p99: 99th percentile of the ground's force, mean over a control step [N].
         ground_force_peak: its largest magnitude in a physics step [N].
-        airborne: share of the time without a contact with the ground.
+        airborne: share of the control steps that begin without a contact with the ground; in those
+            of `flight_turn` none comes within the step, either.
         jerk: root mean square over joints and time [rad/s3].
         chatter: bodies whose contacts control begins or ceases to use, a second [1/s].
         sticking: share of what control keeps still on the ground that has hardly a force on it.
