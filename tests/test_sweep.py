@@ -123,6 +123,13 @@ def test_dry_run_writes_nothing(cli, tmp_path):
     assert not out.exists()
 
 
+def test_a_dry_run_of_pushes_that_come_later_than_its_trial_ends(cli, tmp_path):
+    pushed = ("disturbance=push", "disturbance.time=2", "duration=2.5", "seed=range(0,3)")
+    code, stdout, stderr = cli("sweep", *pushed, "--out", tmp_path / "out", "--dry-run")
+    assert (code, stderr) == (0, "")
+    assert "\nabout " in stdout
+
+
 @pytest.mark.parametrize(
     ("keep", "runs", "before"),
     [("all", 8, "about "), ("failures", 8, "up to about "), ("sample:3", 3, "about ")],

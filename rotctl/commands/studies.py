@@ -164,11 +164,11 @@ def judge(arguments: argparse.Namespace) -> int:
     with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
         found = judge(folder, wanted, engine, shown.update, metrics)
     groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
+    path = folder / "judged.csv"
+    files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(printable(markdown(groups)), end="\n\n")
     if arguments.overrides:
         print(f"by these criteria: {found.lost} no longer a success, {found.won} newly one")
-    path = folder / "judged.csv"
-    files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(path)
     for note in [*found.table.notes, *groups.notes]:
         print(one_line(note), file=sys.stderr)
@@ -201,9 +201,9 @@ def summarise(arguments: argparse.Namespace) -> int:
 
     found = table(arguments.folder)
     groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
+    paths = written(arguments.folder, found.rows, groups.rows)  # before a reader may hang up
     print(printable(markdown(groups)), end="\n\n")
-    for path in written(arguments.folder, found.rows, groups.rows):
-        print(path)
+    print(*paths, sep="\n")
     for note in [*found.notes, *groups.notes]:
         print(one_line(note), file=sys.stderr)
     return 0

@@ -7,9 +7,11 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
 from rotctl.results import index
 from rotctl.run import make
+from rotctl.schema import Config
 from rotctl.sweep.keep import NEVER, Keep
 from rotctl.sweep.launch import Tally
 from rotctl.sweep.plan import Plan, Planned, suffices
@@ -43,21 +45,32 @@ def without_running(
     if len(left) > FEW:
         lines.append(f"  ... and {len(left) - FEW} more")
     if left:
-        config = left[0].config
-        rate = config.controller.rate
-        short = replace(config, duration=min(config.duration, round(TRIAL * rate) / rate))
-        begin = time.perf_counter()
-        log = make(short).log
-        cost = (time.perf_counter() - begin) / short.duration
+        cost, log, lasted = _trial(left[0].config)
         seconds = cost * sum(run.config.duration for run in left) / max(1, workers)
         on = f"{max(1, workers)} worker{'s' * (workers > 1)}"
         lines.append(f"about {duration(seconds)} on {on}, if they are as fast as this machine")
         stored = sum(run.config.duration for run in left if wish(run.run_id) != NEVER)
         most = "up to " if keep.mode == "failures" else ""
-        size = _size(len(log) / short.duration * stored)
+        size = _size(log / lasted * stored)
         told = f"{most}about {size} of logs, if all are as the first"
         lines.append(told if stored else "no logs are kept")
     return "\n".join(lines)
+
+
+def _trial(config: Config) -> tuple[float, int, float]:
+    """What a run costs: time [s/s], the bytes of a log and the simulated time that it is of [s].
+
+    From its beginning; from all of it where its beginning alone is refused, as a push comes later.
+    """
+    rate = config.controller.rate
+    short = replace(config, duration=min(config.duration, round(TRIAL * rate) / rate))
+    begin = time.perf_counter()
+    try:
+        tried, log = short, make(short).log
+    except InputError:
+        begin = time.perf_counter()
+        tried, log = config, make(config).log
+    return (time.perf_counter() - begin) / tried.duration, len(log), tried.duration
 
 
 def _size(count: float) -> str:
