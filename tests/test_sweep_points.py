@@ -143,6 +143,17 @@ def test_what_is_added_is_composed_once(monkeypatch, added):
     assert loaded == [["behaviour=forward_roll", f"+course={name}"] for name in ("circle", "turn")]
 
 
+def test_what_is_left_out_is_composed_once_for_all_that_is_elsewhere(monkeypatch):
+    module, loaded = import_module("rotctl.sweep.points"), []
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
+    grid = ["behaviour=forward_roll_2", "~behaviour.catch", "behaviour.heading=0,10", "seed=1,2"]
+    found = list(points([grid]))
+    assert loaded == [[*grid[:2], f"behaviour.heading={value}"] for value in (0, 10)]
+    for point in found:
+        assert point.config == config.load(list(point.overrides))
+        assert point.config.behaviour.catch is None
+
+
 @pytest.mark.parametrize("bad", ["seed=-1", "controller.pose.weight=-2", "terrain.name=''"])
 def test_a_value_that_is_wrong_is_told_as_for_a_single_run(bad):
     with pytest.raises(InputError) as alone:

@@ -15,6 +15,7 @@ from rotctl import labels, plain
 from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.listing import choices
 from rotctl.results.keys import value_at
 from rotctl.schema import Config, changed
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
@@ -94,9 +95,12 @@ def _values(override: str) -> list[Assignment]:
 def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Config:
     """As `config.load`, but quick where only plain values differ from an earlier point."""
     texts = [one.text for one in assignments]
-    if any(one.ordered or one.key.startswith(PARTS) for one in assignments):
+    ordered = [one.key for one in assignments if one.ordered]
+    if any(one.key.startswith(PARTS) for one in assignments) or any(map(choices, ordered)):
         return load(texts)
-    choosing = tuple(one.text for one in assignments if one.way is None)
+    touched = {key.partition(".")[0] for key in ordered}  # there what comes first may matter
+    plainly = [one for one in assignments if one.way and str(one.way[0]) not in touched]
+    choosing = tuple(one.text for one in assignments if one not in plainly)
     if choosing not in bases:
         bases[choosing] = load(list(choosing))
     base = bases[choosing]
@@ -106,9 +110,8 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     ):
         return load(texts)
     set_by: dict[str, list[Assignment]] = {}
-    for one in assignments:
-        if one.way is not None:
-            set_by.setdefault(str(one.way[0]), []).append(one)
+    for one in plainly:
+        set_by.setdefault(str(one.way[0] if one.way else ""), []).append(one)
     data = to_dict(base)
     made = {}
     for name, setting in set_by.items():
