@@ -99,8 +99,14 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
     if any(one.key.startswith(PARTS) for one in assignments) or any(map(choices, ordered)):
         return load(texts)
     touched = {key.partition(".")[0] for key in ordered}  # there what comes first may matter
-    plainly = [one for one in assignments if one.way and str(one.way[0]) not in touched]
-    choosing = tuple(one.text for one in assignments if one not in plainly)
+    set_by: dict[str, list[Assignment]] = {}
+    composed = []
+    for one in assignments:
+        if one.way and (top := str(one.way[0])) not in touched:
+            set_by.setdefault(top, []).append(one)
+        else:
+            composed.append(one.text)
+    choosing = tuple(composed)
     if choosing not in bases:
         bases[choosing] = load(list(choosing))
     base = bases[choosing]
@@ -109,9 +115,6 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
         one.key.startswith(TAKEN) for one in assignments
     ):
         return load(texts)
-    set_by: dict[str, list[Assignment]] = {}
-    for one in plainly:
-        set_by.setdefault(str(one.way[0] if one.way else ""), []).append(one)
     data = to_dict(base)
     made = {}
     for name, setting in set_by.items():
