@@ -58,7 +58,9 @@ CASES = {
     ),
     "as written": Case((), r"controller\.thresholds\.(force|torque)", seconds=2.0),
     "hull": Case(
-        ("controller.supervisor=convex_hull",), r"controller\.thresholds\.hull", seconds=2.0
+        ("behaviour=forward_roll_1_on_head", "controller.supervisor=convex_hull"),
+        r"controller\.thresholds\.hull",
+        seconds=2.0,
     ),
     "push": Case(
         ("disturbance=push", "disturbance.time=[0.05,0.2]"),
