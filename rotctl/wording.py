@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 STILL = 0.05  # [rev, rev/s] less is no rolling
 SHORT = 5  # times what is left out: of a shorter run that is more than a fifth
+SOON = 0.05  # [s] less is at once
 AWAY = 0.6  # [-] of a command: who is so far off it does not follow it; Table 1's rows are within
 
 
@@ -107,7 +108,14 @@ def _disturbed(summary: dict[str, Any]) -> str:
     """What came from outside and when; in words where nothing did."""
     if not summary["disturbed_by"]:
         return "by nothing: what was to come did not come in the run"
-    return f"by {summary['disturbed_by']:.3g} N s, from {summary['disturbed_at']:.2f} s on"
+    came = f"by {summary['disturbed_by']:.3g} N s, from {summary['disturbed_at']:.2f} s on"
+    recovered, taken = summary.get("recovered"), summary.get("recovery")
+    if not isinstance(recovered, int | float):
+        return came
+    if not isinstance(taken, int | float):
+        return f"{came}; did not roll on"
+    then = f"{taken:.1f} s after it" if taken >= SOON else "at once"
+    return f"{came}; rolled on {then}{'' if recovered else ', too late'}"
 
 
 def _pace(summary: dict[str, Any]) -> str:

@@ -15,6 +15,7 @@ from rotctl.metrics.judge import judge
 from rotctl.report.site import pushes
 from rotctl.report.site.charts import charts
 from rotctl.report.site.grid import grid
+from rotctl.results.groups import grouped, markdown
 from rotctl.results.table import Table
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -69,7 +70,8 @@ def test_a_summary_tells_what_came():
     row, line = told("disturbance.impulse=20")
     assert row["disturbed_by"] == pytest.approx(20.0, rel=1e-9)
     assert row["disturbed_at"] == pytest.approx(1.0, abs=1 / 60 + 1e-9)
-    assert line == f"  disturbed    by 20 N s, from {row['disturbed_at']:.2f} s on"
+    came = f"  disturbed    by 20 N s, from {row['disturbed_at']:.2f} s on"
+    assert line == f"{came}; rolled on at once"
 
 
 def test_a_summary_tells_that_nothing_came():
@@ -163,6 +165,59 @@ def test_without_a_push_that_ends_nothing_is_overcome(disturbance):
     found = judge(buffer.arrays(), config.criteria, config.behaviour.commanded, 1 / 60, 3.0)
     assert np.isnan(found.columns["recovered"])
     assert np.isnan(found.columns["recovery"])
+
+
+def test_what_the_end_cuts_short_is_not_called_unrecovered():
+    """Thrown over at 2 s: 3.5 s on, all that one looks at, it is known, and not before."""
+    thrown = ("disturbance.time=2", "disturbance.impulse=600", "disturbance.direction=90")
+    buffer, columns = measured(*thrown, "duration=7")
+    assert columns["recovered"] == 0.0
+    scenario = build(load([*PUSH, *thrown]))
+    config, log = scenario.config, buffer.arrays()
+    asked = config.behaviour.commanded
+    known = {}
+    for end in (4.0, 5.0, 5.5, 6.0):
+        cut = {k: v[: round(60 * end)] if k[:6] != "model/" else v for k, v in log.items()}
+        whole = judge(cut, config.criteria, asked, 1 / 60, end).columns
+        broken = judge(cut, config.criteria, asked, 1 / 60, 20.0).columns
+        assert broken["recovered"] == 0.0
+        known[end] = not np.isnan(whole["recovered"])
+    assert known == {4.0: False, 5.0: False, 5.5: False, 6.0: True}
+
+
+@pytest.mark.parametrize(
+    ("recovered", "recovery", "words"),
+    [
+        (1.0, 0.26, "; rolled on 0.3 s after it"),
+        (1.0, 0.04, "; rolled on at once"),
+        (0.0, 2.44, "; rolled on 2.4 s after it, too late"),
+        (0.0, None, "; did not roll on"),
+        (None, None, ""),
+    ],
+)
+def test_a_summary_tells_what_came_of_it(recovered, recovery, words):
+    row, _ = told("disturbance.impulse=20", "duration=2")
+    row |= {"recovered": recovered, "recovery": recovery}
+    line = next(line for line in readable(row).splitlines() if "disturbed" in line)
+    assert line == f"  disturbed    by 20 N s, from {row['disturbed_at']:.2f} s on{words}"
+
+
+def test_a_table_has_the_share_that_rolled_on_and_nothing_of_who_was_not_pushed():
+    rows = [
+        {"behaviour": b, "seed": i, "success": True, "status": "done", "code": "c", "log": ""}
+        | {"run_id": f"{b}{i}", "trajectory": f"{b}{i}", "recovered": value}
+        for b, values in (("a", [1.0, 0.0, 1.0, None]), ("b", [None] * 4))
+        for i, value in enumerate(values)
+    ]
+    table = Table(pd.DataFrame(rows), ["behaviour", "seed"], ["recovered"], [])
+    found = grouped(table)
+    assert found.rows["recovered_rate"].tolist() == pytest.approx([2 / 3, nan], nan_ok=True)
+    heading, _, a, b = markdown(found).splitlines()
+    assert heading.split()[-2] == "recovered"
+    assert a.split()[-3:-1] == ["67", "%"]
+    assert b.split()[-2] == "-"
+    alone = Table(table.rows[4:].reset_index(drop=True), table.keys, table.metrics, [])
+    assert "recovered" not in markdown(grouped(alone))
 
 
 # ---------------------------------------------------------------- the map

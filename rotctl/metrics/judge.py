@@ -125,6 +125,7 @@ def judge(
         links: what was asked of the parts of a chain.
     """
     steps = len(floats(log, "trajectory/time"))
+    whole = steps * period >= wanted - 1e-6
     failures = solver_failures(log)
     asked = dict(commanded)
     upright = math.nan if mj is None else finish.upright(mj)
@@ -137,7 +138,7 @@ def judge(
             rolling_log = finish.rolled(log, commanded).log
             settle, stall = criteria.roll.settle, criteria.roll.stall_progress
         else:
-            rolled = rolling.measure(log, criteria, direction, period, halts)
+            rolled = rolling.measure(log, criteria, direction, period, halts, whole)
             found, reason = dict(vars(rolled)), failure_reason(rolled, criteria, wanted)
             del found["stalled_at"], found["went_on"]  # of people's interest in a reason alone
             rolling_log, settle, stall = log, criteria.settle, criteria.stall_progress
@@ -166,7 +167,7 @@ def judge(
         found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
     if reason and steps and not isinstance(criteria, ChainCriteria):
         reason = early.too_short(log, criteria, commanded, found, period) or reason
-    if steps * period < wanted - 1e-6:
+    if not whole:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:
         reason = f"every solver failed on {failures} control steps"

@@ -128,7 +128,8 @@ class RollingMetrics:
         sticking: share of what control keeps still on the ground that has hardly a force on it.
         recovery: from the end of what acted from outside until it rolls on along the way [s];
             NaN if it never did, or nothing acted and ended.
-        recovered: 1 if that was in time, 0 if not; NaN where nothing acted and ended.
+        recovered: 1 if that was in time, 0 if not; NaN where nothing acted and ended, or the run
+            ended before that could be told.
         torque_p99_fraction: 99th percentile of |torque| / limit over joints and time.
         solver_failures: control steps on which every solver failed.
     """
@@ -186,9 +187,8 @@ IN_FILES_ONLY = (
     "jerk",
     "chatter",
     "sticking",
-    "recovery",
-    "recovered",
 )
+YES_OR_NO = ("recovered",)  # of many runs a share says more than a median
 _ZERO_AT_FIRST = (
     "duration",
     "revolutions",
@@ -202,7 +202,12 @@ NO_ROWS = RollingMetrics(**_NO_ROWS | dict.fromkeys(_ZERO_AT_FIRST, 0.0) | {"sol
 
 
 def measure(
-    log: Arrays, criteria: RollingCriteria, commanded: float, period: float, halts: Halts = ()
+    log: Arrays,
+    criteria: RollingCriteria,
+    commanded: float,
+    period: float,
+    halts: Halts = (),
+    whole: bool = True,
 ) -> RollingMetrics:
     """Measure a roll.
 
@@ -211,6 +216,7 @@ def measure(
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
         halts: when it is told to halt, and until when [s].
+        whole: whether the run went on for as long as it was to.
     """
     com = along_way(log)
     steps = len(com)
@@ -254,7 +260,7 @@ def measure(
         airborne=float(np.mean(np.asarray(log["contacts/count"]) == 0)),
         jerk=jerk(log, period),
         **use_of_contacts(log, period),
-        **recovery(log, criteria, progress, axis, period),
+        **recovery(log, criteria, progress, axis, period, whole),
         torque_p99_fraction=percentile(fraction, 99),
         solver_failures=solver_failures(log),
         **_worst_revolutions(log, direction, progress, axis, period, rolls),

@@ -70,10 +70,12 @@ def recovery(
     progress: NDArray[np.float64],
     axis: NDArray[np.float64],
     period: float,
+    whole: bool,
 ) -> dict[str, Any]:
     """How a roll overcomes what acted from outside: `recovery` [s] and `recovered`.
 
-    The axis is its mean over a second: a roll sways.
+    The axis is its mean over a second: a roll sways. A run that is whole and was over before it
+    could be told whether it rolls on in time says nothing; one that broke off has not recovered.
     """
     wrench = floats(log, "disturbance/wrench") if "disturbance/wrench" in log else np.zeros((0, 6))
     acted = np.flatnonzero(wrench.any(axis=1))
@@ -87,4 +89,5 @@ def recovery(
         if along and progress[row + ahead] - progress[row] >= limits.recovery_progress:
             taken = (row - first) * period
             return {"recovery": taken, "recovered": float(taken <= limits.recovery_time)}
-    return {"recovery": math.nan, "recovered": 0.0}
+    too_late = whole and last <= first + round(limits.recovery_time / period)
+    return {"recovery": math.nan, "recovered": math.nan if too_late else 0.0}

@@ -36,7 +36,8 @@ class Groups:
 
     Attributes:
         rows: the keys, `n`, `succeeded`, `success_rate`, `success_low`, `success_high`,
-            `distinct`, `no_result`, and `_q25`, `_median`, `_q75` of every metric.
+            `distinct`, `no_result`, and `_q25`, `_median`, `_q75` of every metric; of one that is
+            yes or no also `_rate`, the share of yes among the runs that have it.
         keys: the columns that name a group.
         metrics: those that were measured and are no words, such as the kind of the criteria.
         notes: what a reader should know, one line each.
@@ -117,6 +118,11 @@ def _measured(
         if metrics:
             for metric, found in zip(metrics, _quartiles(values[with_result]), strict=True):
                 row |= {f"{metric}_{q}": x for q, x in zip(QUARTILES, found, strict=True)}
+            for i, metric in enumerate(metrics):
+                if metric in rolling.YES_OR_NO:
+                    there = values[with_result, i]
+                    there = there[~np.isnan(there)]
+                    row[f"{metric}_rate"] = float(there.mean()) if len(there) else None
         yield name, row
 
 
@@ -147,15 +153,17 @@ def _quartiles(values: Array) -> Array:
 
 
 def markdown(groups: Groups) -> str:
-    """The groups as a Markdown table: rates in percent, metrics as median [quartiles].
+    """The groups as a Markdown table: rates in percent, other metrics as median [quartiles].
 
-    Keys but the first, and metrics, with one value throughout are told below it, to keep it narrow.
+    Keys but the first, and metrics, with one value throughout are told below it, to keep it narrow;
+    of metrics that no run has nothing is.
     """
     missing = bool(groups.rows["no_result"].any())
     repeated = bool((groups.rows["distinct"] < groups.rows["n"]).any())
     rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
-    metrics = [metric for metric in groups.metrics if metric not in IN_FILES_ONLY]
-    spreads = {metric: [_spread(row, metric) for row in rows] for metric in metrics}
+    told = {m: [_spread(row, m) for row in rows] for m in groups.metrics if m not in IN_FILES_ONLY}
+    spreads = {metric: texts for metric, texts in told.items() if set(texts) != {"-"}}
+    metrics = list(spreads)
     constant = {metric for metric, texts in spreads.items() if len(set(texts)) == 1}
     constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
     varying = [metric for metric in metrics if metric not in constant]
@@ -195,6 +203,9 @@ def _rate(row: Mapping[str, Any]) -> str:
 
 
 def _spread(row: Mapping[str, Any], metric: str) -> str:
+    if f"{metric}_rate" in row:
+        rate = row[f"{metric}_rate"]
+        return "-" if rate is None or rate != rate else f"{100 * rate:.0f} %"
     low, middle, high = (_text(row[f"{metric}_{name}"], ".3g") for name in QUARTILES)
     return middle if low == middle == high else f"{middle} [{low}, {high}]"
 
