@@ -7,7 +7,8 @@ from rotctl import plain
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.plain import NOTHING, dotted, member, way
-from rotctl.schema import Config, check
+from rotctl.same import kept
+from rotctl.schema import Config, changed, check
 from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
 from rotctl.written import to_dict
 
@@ -87,8 +88,21 @@ def configs(data: Sequence[Any], values: Mapping[str, float], seeds: Sequence[in
     """
     if min(seeds) < TRAINING_SEEDS:
         raise InputError(f"seed={min(seeds)}: training seeds start at {TRAINING_SEEDS:,}")
-    filled = [put(variation, values) for variation in data[: len(seeds)]]
-    return [check({**filled[i % len(data)], "seed": seed}) for i, seed in enumerate(seeds)]
+    groups = list(dict.fromkeys(str(way(key)[0]) for key in values))
+    filled = [
+        put({group: variation[group] for group in groups}, values)
+        for variation in data[: len(seeds)]
+    ]
+    return [
+        changed(_checked(data[i % len(data)]), {**filled[i % len(data)], "seed": seed})
+        for i, seed in enumerate(seeds)
+    ]
+
+
+@kept(most=100)
+def _checked(variation: Any) -> Config:
+    """The config of a variation, of which a candidate changes some parts."""
+    return check(variation)
 
 
 def training_seeds(space: Space, seed: int, generation: int) -> range:
