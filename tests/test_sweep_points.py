@@ -70,6 +70,7 @@ def test_grids_follow_each_other():
         ["+start.speed_x=[0,1],[1,2]"],
         ["behaviour.poses.a={knee: 1.0},{knee: 2.0}", "behaviour.poses.a.hip_y=0.5"],
         ["~behaviour.description", "seed=1,2"],
+        ["behaviour=forward_roll_2,stairs", "behaviour.catch.gain=1,2", "behaviour.catch=null"],
         ["++duration=1,2"],
         ["seed=1,2", "+course=circle,slalom", "behaviour.course.pull=10", "behaviour=forward_roll"],
         ["+course=glob(*)", "behaviour=forward_roll"],
@@ -143,12 +144,14 @@ def test_what_is_added_is_composed_once(monkeypatch, added):
     assert loaded == [["behaviour=forward_roll", f"+course={name}"] for name in ("circle", "turn")]
 
 
-def test_what_is_left_out_is_composed_once_for_all_that_is_elsewhere(monkeypatch):
+@pytest.mark.parametrize("out", ["~behaviour.catch", "behaviour.catch=null"])
+def test_what_is_left_out_is_composed_once_for_all_that_is_elsewhere(monkeypatch, out):
     module, loaded = import_module("rotctl.sweep.points"), []
     monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
-    grid = ["behaviour=forward_roll_2", "~behaviour.catch", "behaviour.heading=0,10", "seed=1,2"]
+    grid = ["behaviour=forward_roll_2", out, "behaviour.heading=0,10", "seed=1,2"]
     found = list(points([grid]))
-    assert loaded == [[*grid[:2], f"behaviour.heading={value}"] for value in (0, 10)]
+    for_both = [[*grid[:2], f"behaviour.heading={value}"] for value in (0, 10)]
+    assert [texts for texts in loaded if len(texts) > 1] == for_both
     for point in found:
         assert point.config == config.load(list(point.overrides))
         assert point.config.behaviour.catch is None

@@ -26,6 +26,7 @@ TAKEN = ("controller.", "excursion.")  # of a run, by parts of a chain without t
 Grids = list[list[list[Assignment]]]
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]
+NONE: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -92,13 +93,19 @@ def _values(override: str) -> list[Assignment]:
     return values(override)
 
 
-def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Config:
-    """As `config.load`, but quick where only plain values differ from an earlier point."""
+def _config(
+    assignments: Sequence[Assignment], bases: Bases, parts: Parts, apart: frozenset[str] = NONE
+) -> Config:
+    """As `config.load`, but quick where only plain values differ from an earlier point.
+
+    Args:
+        apart: parts of the config of which all that is said is composed, and not set.
+    """
     texts = [one.text for one in assignments]
     ordered = [one.key for one in assignments if one.ordered]
     if any(one.key.startswith(PARTS) for one in assignments) or any(map(choices, ordered)):
         return load(texts)
-    touched = {key.partition(".")[0] for key in ordered}  # there what comes first may matter
+    touched = apart | {key.partition(".")[0] for key in ordered}  # what comes first may matter
     set_by: dict[str, list[Assignment]] = {}
     composed = []
     for one in assignments:
@@ -123,8 +130,8 @@ def _config(assignments: Sequence[Assignment], bases: Bases, parts: Parts) -> Co
             found = data
             for one in setting:
                 found = plain.exchanged(found, one.way or (), one.value)
-                if found is plain.NOTHING:
-                    return load(texts)  # a new key, or an error for Hydra to tell
+                if found is plain.NOTHING:  # a new key, null in place of a part, or an error
+                    return _config(assignments, bases, parts, apart | {name})
             parts[key] = found[name]
         made[name] = parts[key]
     return changed(base, made)
