@@ -239,6 +239,21 @@ def test_the_history_is_a_table_and_a_picture_and_says_how_to_judge(tmp_path, wh
         assert [line.split("  ")[1] for line in marked] == [found.candidates[0].name]
 
 
+@pytest.mark.parametrize("successes", [0, 1])
+def test_a_result_that_never_succeeds_is_called_so(whole, successes):
+    """Better than a worse start it may be all the same."""
+    best = whole.candidates[0]
+    runs = [replace(run, success=i < successes) for i, run in enumerate(best.runs)]
+    candidates = [replace(best, runs=runs), *whole.candidates[1:]]
+    start = replace(whole.start, score=best.score - 1.0)
+    found = replace(whole, start=start, candidates=candidates)
+    told = f"of {len(runs)} runs to the end, {successes} a success"
+    assert told in result.comparison(found)
+    assert told in "\n".join(result.provenance(found))
+    assert ("nothing was found that succeeds" in result.comparison(found)) == (not successes)
+    assert bool(result.missed(found)) == (not successes)
+
+
 def test_what_is_printed_to_judge_a_result_can_be_pasted(whole, tmp_path):
     """Its copies go into folders that are made where they are not there yet."""
     folder, mine = tmp_path / "a search", tmp_path / "my conf"

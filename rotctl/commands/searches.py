@@ -65,6 +65,6 @@ def tune(arguments: argparse.Namespace) -> int:
         outcome = tune(search, arguments.out, budget, engine, watch)
     written = result.write(outcome, arguments.out)
     print(result.comparison(outcome), *written, sep="\n")
-    if result.is_better(outcome):
+    if not result.missed(outcome):
         print(result.how_to_judge(outcome, written, arguments.out))
     return 0

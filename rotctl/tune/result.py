@@ -87,9 +87,10 @@ def provenance(result: SearchResult) -> list[str]:
 
 
 def summary(candidate: Candidate) -> str:
-    """Score and survival on the final seeds."""
-    ended = finished(candidate.runs)
-    return f"{candidate.score:.3f}, {ended:.0%} of {len(candidate.runs)} runs to the end"
+    """Score, survival and success on the final seeds."""
+    ended, count = finished(candidate.runs), len(candidate.runs)
+    succeeded = sum(run.success for run in candidate.runs)
+    return f"{candidate.score:.3f}, {ended:.0%} of {count} runs to the end, {succeeded} a success"
 
 
 def comparison(result: SearchResult) -> str:
@@ -99,17 +100,19 @@ def comparison(result: SearchResult) -> str:
         f"  {row.name:32} {summary(row)}{'  <- written' if row is written else ''}"
         for row in (result.start, *result.candidates)
     ]
-    if not is_better(result):
-        lines.append(
-            "none is better than the start: search on, or change the space; what is written is "
-            "to look at"
-        )
+    if wanting := missed(result):
+        lines.append(f"{wanting}: search on, or change the space; what is written is to look at")
     return "\n".join(lines)
 
 
-def is_better(result: SearchResult) -> bool:
-    """Whether the search has found something better than what it started from."""
-    return result.candidates[0].score > result.start.score
+def missed(result: SearchResult) -> str:
+    """Why the result is not worth judging; empty if it is."""
+    best, start = result.candidates[0], result.start
+    if best.score <= start.score:
+        return "none is better than the start"
+    if not any(run.success for run in best.runs):
+        return "nothing was found that succeeds, by its criteria, from any of these starts"
+    return ""
 
 
 def how_to_judge(result: SearchResult, written: list[Path], folder: Path) -> str:
