@@ -124,7 +124,7 @@ CASES = {
             "behaviour.finish.after=0",
             "behaviour.finish.revolutions=2",
         ),
-        r"behaviour\.finish\.(revolutions|ahead)",
+        r"behaviour\.finish\.revolutions",
         seconds=1.5,
     ),
     "chain": Case(

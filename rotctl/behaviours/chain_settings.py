@@ -160,14 +160,13 @@ def _require_turns(part: PartSettings, number: int) -> None:
     finish = None if isinstance(behaviour, StagedSettings) else behaviour.finish
     if finish is None:
         return
-    least = max(LEAST_TURNS, 1.0 + finish.ahead)
-    if not 0.0 < finish.revolutions < least:
+    if not 0.0 < finish.revolutions < LEAST_TURNS:
         return
     place = part.place(number).removeprefix("behaviour.")
     raise ValueError(
         f"{place}: behaviour.finish.revolutions={finish.revolutions:g}: a roll out of a stand that "
         "is told to end in its first revolution stops over its hands; "
-        f"give {least:g} or more, or 0, which counts none"
+        f"give {LEAST_TURNS:g} or more, or 0, which counts none"
     )
 
 

@@ -28,6 +28,8 @@ from rotctl.motion import RollAbout
 from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
+AHEAD = 0.9  # [rev] of the end of the last roll: it leaves the squat, hands on the ground
+
 
 @validated(frozen=True, config=STRICT)
 class FinishSettings:
@@ -40,8 +42,8 @@ class FinishSettings:
         turning: the whole body turns less fast [rev/s],
         within: and the phase is so near to that in which it waits [rev].
         tasks, stages: as a staged behaviour has them.
-        revolutions: and it rolls so many before [rev]; 0 counts none.
-        ahead: of those it is told so long before the last one is over [rev].
+        revolutions: and it rolls so many before [rev]; 0 counts none. It is told so as it leaves
+            the squat before the last one, `AHEAD` of its end.
     """
 
     after: NonNegative
@@ -51,18 +53,17 @@ class FinishSettings:
     stages: Annotated[tuple[Stage, ...], Field(min_length=1, max_length=50)]
     tasks: dict[str, TaskSettings] = field(default_factory=dict)
     revolutions: NonNegative = 0.0
-    ahead: NonNegative = 0.0
 
     def __post_init__(self) -> None:
-        if 0.0 < self.revolutions <= self.ahead:
+        if 0.0 < self.revolutions <= AHEAD:
             raise ValueError(
-                f"revolutions={self.revolutions:g}: must be more than ahead={self.ahead:g}, or 0, "
+                f"revolutions={self.revolutions:g}: must be more than {AHEAD:g}, or 0, "
                 "which counts none"
             )
 
     def told(self, time: float, phase: float) -> bool:
         """Whether it is told to end, at a time [s] and a phase from upright [rad]."""
-        turned = not self.revolutions or phase >= tau * (self.revolutions - self.ahead)
+        turned = not self.revolutions or phase >= tau * (self.revolutions - AHEAD)
         return time >= self.after and turned
 
     def staged(self, roll_about: RollAbout, heading: Finite) -> StagedSettings:

@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.alighting import AlightingSettings
 from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.course import CourseSettings
-from rotctl.behaviours.finishing import Finishing, FinishSettings
+from rotctl.behaviours.finishing import AHEAD, Finishing, FinishSettings
 from rotctl.behaviours.obliqueness import Oblique
 from rotctl.behaviours.pacing import Halts, PaceSettings
 from rotctl.behaviours.rolling import Rolling
@@ -116,10 +116,10 @@ class RollingSettings:
             asked = {kept: math.nan if self.pace.schedule else asked[kept]}
         if self.finish is None:
             return asked
-        rolls, ahead = self.finish.revolutions, self.finish.ahead
-        counted = {"revolutions_commanded": rolls, "revolutions_told": rolls - ahead}
+        rolls = self.finish.revolutions
+        counted = {"revolutions_commanded": rolls, "revolutions_told": rolls - AHEAD}
         asked = asked | {"finish_commanded": self.finish.after}
-        return asked | counted if self.finish.revolutions else asked
+        return asked | counted if rolls else asked
 
     @property
     def halts(self) -> Halts:
