@@ -174,6 +174,15 @@ def test_an_experiment_has_a_folder_of_its_name_and_other_sweeps_want_one(
     assert not list(tmp_path.iterdir())
 
 
+def test_runs_of_other_sweeps_that_claims_would_be_judged_over_are_told(cli, tmp_path):
+    sweep = ("sweep", "duration=0.1", "--jobs", "1", "--keep", "rows", "--out", tmp_path)
+    experiment = (*sweep, "+experiment=forward_roll_1", "seed=1")
+    assert "of other sweeps" not in cli(*sweep, "seed=1,2")[2]
+    assert f"\n1 run of other sweeps is in {tmp_path}: the claims" in f"\n{cli(*experiment)[2]}"
+    assert cli(*experiment, "--quiet")[2] == ""
+    assert "of other sweeps" not in cli(*experiment[:-1], "seed=1,2")[2]
+
+
 def test_a_file_in_the_way_of_the_folder(cli, tmp_path):
     (tmp_path / "file").touch()
     code, _, stderr = cli("sweep", BRIEF, "--out", tmp_path / "file")

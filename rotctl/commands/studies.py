@@ -58,7 +58,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     from rotctl.headless import mujoco_without_opengl
 
     mujoco_without_opengl()
-    from rotctl.results import experiments
+    from rotctl.results import experiments, manifest
     from rotctl.sweep import keep
     from rotctl.sweep.claimed import require_claims
     from rotctl.sweep.launch import launch
@@ -93,8 +93,10 @@ def sweep(arguments: argparse.Namespace) -> int:
             with tqdm(total=len(runs), desc="checking", delay=1.0, disable=watched) as looking:
                 there = plan(runs, out, arguments.strict, looking.update, kept)
             if not arguments.quiet:
+                mine = {run.run_id for run in runs}
+                others = len(manifest.read(out).keys() - mine) if experiment else 0
                 print(
-                    at_the_start(there, out, engine.where, count(matrix), len(runs)),
+                    at_the_start(there, out, engine.where, count(matrix), len(runs), others),
                     file=sys.stderr,
                     flush=True,
                 )

@@ -78,16 +78,24 @@ def _size(count: float) -> str:
     return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{max(1.0, count / 1e6):.0f} MB"
 
 
-def at_the_start(plan: Plan, folder: Path, where: str, points: int, runs: int) -> str:
+def at_the_start(
+    plan: Plan, folder: Path, where: str, points: int, runs: int, others: int = 0
+) -> str:
     """What was found in the folder, and what will be done where.
 
     Args:
         points: of the grid; runs: that they are.
+        others: runs of other sweeps there, where claims are to be judged.
     """
     lines = [f"simulated again: {reason}" for reason in plan.replaced]
     lines += _fewer(points, runs)
     for code, count in plan.other_code.items():
         lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")
+    if others:
+        lines.append(
+            f"{_many(others)} of other sweeps {'is' if others == 1 else 'are'} in {folder}: the "
+            "claims are judged over all that they are about, there too; --out DIR keeps them apart"
+        )
     there = f", {len(plan.done)} are there already" if plan.done else ""
     lines.append(f"{_many(len(plan.left))} to do in {folder}{there}; on {where}")
     return "\n".join(lines)
