@@ -125,9 +125,9 @@ def replacing(path: Path, *, durable: bool = False) -> Iterator[Path]:
 @contextmanager
 def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, FileIO]]:
     """That file, and it opened; whoever else writes to `path` meanwhile waits."""
-    part = path.with_name(f"{path.name}.part")
     try:
-        with _new(part) as file:
+        file, part = _new(path.with_name(f"{path.name}.part"))
+        with file:
             try:
                 yield part, file
                 if durable:
@@ -143,35 +143,47 @@ def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, FileIO]]:
         raise InputError(f"cannot write {path}: {error.strerror or error}") from None
 
 
-def _new(part: Path) -> FileIO:
-    """A file made anew, where nobody can have put a link, and locked: it is not left over."""
+def _new(part: Path) -> tuple[FileIO, Path]:
+    """A file made anew, where nobody can have put a link, and locked: it is not left over.
+
+    On a disk that knows no locks it has a name of its own where one lies at `part`, which may be
+    left over, or another process's that still writes it.
+    """
     while True:
         try:
             file = open(part, "xb", buffering=0)  # noqa: SIM115
         except FileExistsError:
-            _remove_left(part)
+            if not _removed(part):
+                part = part.with_name(f"{part.stem}.{os.urandom(4).hex()}.part")
             continue
-        if _held(file, part):
-            return file
+        _wait(file)
+        if _still_at(part, file):
+            return file, part
         file.close()
 
 
-def _remove_left(part: Path) -> None:
-    """Remove what a kill left behind, or wait for the process that is writing it."""
+def _removed(part: Path) -> bool:
+    """Remove what a kill left behind, or wait for the process that is writing it.
+
+    Returns:
+        False where the disk knows no locks, so that nobody can tell which it is.
+    """
     try:
         left = os.open(part, os.O_WRONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except FileNotFoundError:  # it took its place meanwhile; what lies there next is another's
-        return
+        return True
     except OSError:  # a link or a pipe, which nobody of ours made
         part.unlink(missing_ok=True)
-        return
+        return True
     with open(left, "wb", buffering=0) as file:
-        if _held(file, part):
+        locked = _wait(file)
+        if locked and _still_at(part, file):
             part.unlink(missing_ok=True)
+    return locked
 
 
-def _held(file: FileIO, part: Path) -> bool:
-    """Lock a file; whether it is still the one at `part`.
+def _wait(file: FileIO) -> bool:
+    """Lock a file; whether its disk knows locks.
 
     Raises:
         TimeoutError: the process that is writing it does not come to an end.
@@ -179,15 +191,16 @@ def _held(file: FileIO, part: Path) -> bool:
     for _ in range(round(PATIENCE / TURN)):
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            break
+            return True
         except BlockingIOError:
             time.sleep(TURN)
-        except OSError:  # a disk that knows no locks
-            break
-    else:
-        raise TimeoutError(
-            errno.ETIMEDOUT, f"another process has been writing it for {PATIENCE:g} s"
-        )
+        except OSError:
+            return False
+    raise TimeoutError(errno.ETIMEDOUT, f"another process has been writing it for {PATIENCE:g} s")
+
+
+def _still_at(part: Path, file: FileIO) -> bool:
+    """Whether a file is the one that lies at `part`."""
     try:
         return os.path.samestat(os.fstat(file.fileno()), os.stat(part, follow_symlinks=False))
     except FileNotFoundError:

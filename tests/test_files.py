@@ -1,5 +1,6 @@
 """Files are plain ones where it matters, and nothing outside a folder is read or written."""
 
+import errno
 import multiprocessing
 import os
 import shutil
@@ -150,6 +151,28 @@ def test_two_that_write_the_same_file_at_once_each_put_a_whole_one(folder):
     assert os.listdir(folder) == ["a"]
 
 
+def test_without_locks_nobody_publishes_what_another_has_half_written(folder, monkeypatch):
+    """Which had one take away the other's file, and that one then put half of the first's there."""
+
+    def none(file, how):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", none)
+    (folder / "b.part").write_text("left by a kill")
+    for name in ("a", "b"):
+        path = folder / name
+        with files.replacing(path) as first:
+            first.write_text("first, ")
+            with files.replacing(path) as second:
+                second.write_text("half")
+                with first.open("a") as more:
+                    more.write("whole")
+                assert {first.name, second.name} <= set(os.listdir(folder))
+            assert path.read_text() == "half"
+        assert path.read_text() == "first, whole"
+    assert sorted(os.listdir(folder)) == ["a", "b", "b.part"]
+
+
 def test_the_part_of_a_third_one_stays_where_that_of_the_second_took_its_place(folder, monkeypatch):
     part = folder / "a.part"
 
@@ -158,7 +181,7 @@ def test_the_part_of_a_third_one_stays_where_that_of_the_second_took_its_place(f
         raise FileNotFoundError(path)
 
     monkeypatch.setattr(files.os, "open", gone_and_another_begun)
-    files._remove_left(part)
+    files._removed(part)
     assert part.read_bytes() == b"another's"
 
 
