@@ -62,7 +62,8 @@ def own_file(
     except InputError as error:
         if str(error) == complaint:
             named = [path for group, path in mine.items() if f"{group}." in complaint]
-            return f"{next(iter(named or mine.values()))}: "
+            found = named or list(mine.values())
+            return f"{found[0]}: " if named or len(found) == 1 else ""  # else it is how they meet
     return ""
 
 

@@ -279,6 +279,24 @@ def test_sweeps_are_compared(here, cli):
     assert "torque_p99_fraction" in said.partition("figures")[2]
 
 
+def test_of_sweeps_over_several_behaviours_their_names_are_compared(here, cli):
+    """Not the hundreds of keys that only some of them have; and who rolled on as a share."""
+    for name, others in (("a", ("stand", "get_up")), ("b", ("stand",))):
+        for behaviour in ("forward_roll_1", *others):
+            api.simulate(load([f"behaviour={behaviour}", "duration=0.2"]), name)
+    pushed = ["disturbance=push", "disturbance.time=0.5", "disturbance.impulse=1", "duration=2.5"]
+    api.simulate(load(pushed), "c")
+    config, _, figures = cli("diff", "a", "b")[1].partition("figures")
+    lines = [line.split("  ") for line in config.splitlines()[1:] if line]
+    told = {line[0]: [cell.strip() for cell in line[1:] if cell.strip()] for line in lines}
+    assert told["behaviour.name"] == ['"forward_roll_1, get_up, stand"', '"forward_roll_1, stand"']
+    assert all(key.endswith(".name") or key.count(".") == 0 for key in told)
+    assert "recovered" not in figures
+    figures = cli("diff", "a", "c")[1].partition("figures")[2]
+    line = next(line for line in figures.splitlines() if "recovered" in line)
+    assert line.split() == ["recovered_rate", "-", "1"]
+
+
 KEYS = (
     "name, kind, roll_about, angular_velocity, speed, heading, align_with_slope, poses, reference"
 )

@@ -1,7 +1,7 @@
 """Two runs or two sweeps side by side: where their configs differ, and their figures."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,11 +11,13 @@ from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.results.configs import config_of
 from rotctl.results.groups import grouped
+from rotctl.results.keys import value_at
 from rotctl.results.stored_runs import DONE, stored_runs
 from rotctl.results.table import tabulated
 
 _NOT_FIGURES = ("run_id", "real_time_factor", "wall_time")
 _VARIES = "(varies)"
+NAME = ".name"  # of a choice, in its group
 _SPREAD = ("_q25", "_median", "_q75")
 
 
@@ -27,11 +29,13 @@ class Side:
         sweep: whether it is many runs.
         config: dotted key to value; of many runs what they share, else `(varies)`.
         figures: name to value, or to (quartile, median, quartile).
+        mixed: groups of which its runs have several choices.
     """
 
     sweep: bool
     config: Mapping[str, Any]
     figures: Mapping[str, Any]
+    mixed: Collection[str] = ()
 
 
 def compared(one: Path, other: Path) -> str:
@@ -43,9 +47,11 @@ def compared(one: Path, other: Path) -> str:
     sides = (_side(one), _side(other))
     if sides[0].sweep != sides[1].sweep:
         raise InputError(f"{one} and {other}: a run and a sweep; give two of a kind")
+    mixed = {group for side in sides for group in side.mixed}
+    ours, theirs = (_without_parts(side.config, mixed) for side in sides)
     return "\n".join(
         [
-            *_table("config", sides[0].config, sides[1].config, one, other),
+            *_table("config", ours, theirs, one, other),
             "",
             *_table("figures", sides[0].figures, sides[1].figures, one, other),
         ]
@@ -63,11 +69,31 @@ def _side(path: Path) -> Side:
         raise InputError(f"{path}: no run in it is done")
     (row,) = grouped(tabulated(runs, notes), by=[], mixed=True).rows.to_dict("records")
     keys = [str(key) for key in row]
+    rates = [key for key in keys if key.endswith("_rate") and row[key] == row[key]]
     measured = [key.removesuffix("_median") for key in keys if key.endswith("_median")]
-    figures: dict[str, Any] = {"runs": row["n"], "success_rate": row["success_rate"]}
+    measured = [name for name in measured if f"{name}_rate" not in keys]
+    figures: dict[str, Any] = {"runs": row["n"]} | {key: row[key] for key in rates}
     spreads = {name: tuple(row[f"{name}{part}"] for part in _SPREAD) for name in measured}
     figures |= {name: spread for name, spread in spreads.items() if spread[1] == spread[1]}
-    return Side(True, _flat([dict(run.config) for run in done]), figures)
+    config = _flat([dict(run.config) for run in done])
+    mixed = [key for key in config if _names(key) and config[key] == _VARIES]
+    for key in mixed:
+        config[key] = ", ".join(sorted({str(value_at(run.config, key)) for run in done}))
+    return Side(True, config, figures, [key.removesuffix(NAME) for key in mixed])
+
+
+def _names(key: str) -> bool:
+    """Whether a key is the name of a group's choice."""
+    return key.count(".") == 1 and key.endswith(NAME)
+
+
+def _without_parts(config: Mapping[str, Any], mixed: Collection[str]) -> dict[str, Any]:
+    """Of groups of several choices their names alone, whose other keys have nothing in common."""
+    return {
+        key: value
+        for key, value in config.items()
+        if _names(key) or key.partition(".")[0] not in mixed
+    }
 
 
 def _flat(configs: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
