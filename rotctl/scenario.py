@@ -166,7 +166,21 @@ def model_of(config: Config) -> Model:
     Raises:
         InputError: the numbers do not make a model.
     """
-    return _model(config.character, config.terrain, *_world(config))
+    return _model(*model_parts(config))
+
+
+def model_parts(config: Config) -> tuple[Any, ...]:
+    """What its model is built of: character, terrain, and what `_world` gives."""
+    return config.character, config.terrain, *_world(config)
+
+
+def model_hash(*parts: Any) -> str:
+    """Of the model of such parts, but for what only colours it.
+
+    Raises:
+        InputError: the numbers do not make a model.
+    """
+    return _hash_without_looks(_model(*parts).mjcf)
 
 
 def _varied(config: Config, variation: Variation) -> Model:
@@ -184,9 +198,17 @@ def _world(config: Config) -> tuple[Physics, float, int, float]:
 
 
 def run_id(config: Config, model: Model) -> str:
+    """See `identity`."""
+    return identity(config, _hash_without_looks(model.mjcf))
+
+
+def identity(config: Config, model: str) -> str:
     """Hash of what acts: the config, the log's schema version, the model and the clip followed.
 
     What only describes or colours does not act, nor do the criteria: they judge what was simulated.
+
+    Args:
+        model: the hash of its model.
 
     Raises:
         InputError: there is no such clip.
@@ -198,7 +220,7 @@ def run_id(config: Config, model: Model) -> str:
             if name != "criteria"
         },
         "schema": SCHEMA_VERSION,
-        "model": _hash_without_looks(model.mjcf),
+        "model": model,
     }
     reference = getattr(config.behaviour, "reference", None)
     if reference:

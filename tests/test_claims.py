@@ -148,6 +148,9 @@ def test_one_verdict_for_several():
         {"expected": float("nan")},
         {"metric": "turn", "quantile": 1.0},
         {"quantile": 0.05},
+        {"expected": 90.0},
+        {"expected": -0.1},
+        {"tolerance": 5.0},
     ],
 )
 def test_a_claim_is_checked(wrong):

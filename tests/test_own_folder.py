@@ -297,6 +297,14 @@ def test_of_sweeps_over_several_behaviours_their_names_are_compared(here, cli):
     assert line.split() == ["recovered_rate", "-", "1"]
 
 
+def test_two_claims_of_one_name_are_refused(here, cli):
+    cli("new", "experiments", "mine", "--from", "forward_roll_1")
+    path = here / "conf" / "experiments" / "mine.yaml"
+    path.write_text(path.read_text().replace("id: forward_roll_1_phase.", "id: forward_roll_1."))
+    said = f"rotctl: {path}: claims: forward_roll_1.success is the id of two; reports go by it\n"
+    assert cli("sweep", "+experiment=mine", "--dry-run") == (2, "", said)
+
+
 KEYS = (
     "name, kind, roll_about, angular_velocity, speed, heading, align_with_slope, poses, reference"
 )

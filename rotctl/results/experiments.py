@@ -51,6 +51,12 @@ class Experiment:
     deviations: list[Deviation] = field(default_factory=list)
     limitations: list[str] = field(default_factory=list)
 
+    def __post_init__(self) -> None:
+        named = [claim.id for claim in self.claims]
+        for name in named:
+            if named.count(name) > 1:
+                raise ValueError(f"claims: {name:.60} is the id of two; reports go by it")
+
     def grids(self, further: list[str]) -> list[list[str]]:
         """The matrix with its seeds, and with further overrides, which replace theirs."""
         replaced = {_key(override) for override in further}

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from rotctl import same
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME, RunLog, collect
 from rotctl.results import index
@@ -14,9 +15,10 @@ from rotctl.results.configs import config_of
 from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
 from rotctl.run import by_other_criteria, same_criteria
 from rotctl.run_folder import has_all_beside, open_published, publish
-from rotctl.scenario import model_of, run_id
+from rotctl.scenario import identity, model_hash, model_parts
 from rotctl.schema import Config
 from rotctl.summary import Summary
+from rotctl.sweep.assignments import MOST_POINTS
 from rotctl.sweep.keep import Keep, kept
 from rotctl.sweep.points import Point
 
@@ -64,9 +66,10 @@ def planned(points: Iterable[Point]) -> list[Planned]:
         InputError: a point makes no model.
     """
     runs: dict[str, Planned] = {}
+    hashed = same.kept(MOST_POINTS)(model_hash)  # hills are drawn and compiled once a seed
     for point in points:
         config = point.config
-        name = run_id(config, model_of(config))
+        name = identity(config, hashed(*model_parts(config)))
         always = {"behaviour": config.behaviour.name, "seed": config.seed}
         run = runs.setdefault(name, Planned(name, config, always | point.values))
         if run.config.criteria != config.criteria:
