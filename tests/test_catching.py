@@ -124,5 +124,5 @@ def test_pushes_that_lay_a_squat_on_its_side_are_caught():
                 judged = judge(
                     log, config.criteria, config.behaviour.commanded, 1 / 60, 5.0, made.model.mj
                 )
-                recovered.setdefault(catch, []).append(judged.columns["recovered"])
+                recovered.setdefault(catch, []).append(judged.columns["recovered"] == 1.0)
     assert sum(recovered["+catch=arm"]) > sum(recovered[""])
