@@ -119,7 +119,7 @@ WITHOUT = {  # shares, phases, angles, gains and a roll's commands, which are fo
     "Place.angles", "Turned.share", "Turned.angle", "Near.angle", "Near.level", "Tilted.angle",
     "Leant.angle", "FaceDown.angle", "OnFeet.lean", "Rolls.tilt",
     "Launched.knee", "Leaves.angle", "CatchSettings.free", "CatchSettings.gain",
-    "CatchSettings.out", "AlightingSettings.most", "FinishSettings.after", "FinishSettings.ahead",
+    "CatchSettings.out", "AlightingSettings.most", "FinishSettings.after",
     "FinishSettings.revolutions", "FinishSettings.within", "PaceSettings.approach",
     "PaceSettings.back", "PaceSettings.brake", "PaceSettings.calm", "PaceSettings.gain",
     "PaceSettings.leave", "PaceSettings.most", "PaceSettings.patience", "PaceSettings.pose",
