@@ -44,8 +44,9 @@ class Case:
 
 CASES = {
     "default": Case(
-        # listening also has the gains of getting up; alighting has a case of its own
-        ("controller=rolling", "behaviour.alighting=null"),
+        # listening also has the gains of getting up; alighting has a case of its own; from seed 0
+        # rounding decides whether the first solver is content with a step
+        ("controller=rolling", "behaviour.alighting=null", "seed=1"),
         r"(?!character\.bodies|criteria|controller\.thresholds).*",
         {
             r"controller\.merging\.angle": "of hills, where contacts are near each other",
