@@ -64,7 +64,7 @@ def test_a_part_brings_its_gains_where_the_run_has_others():
     assert stand.gains.tasks == load(["behaviour=stand"]).controller.tasks
     assert tip.gains.poses == load(["controller=acrobatic"]).controller.poses
     assert roll.gains is None
-    assert made.controller.name == "listening"
+    assert made.controller.name == "keeping_pace"
     assert (stand.excursion, tip.excursion.name) == (None, "trunk")
 
 
