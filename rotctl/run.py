@@ -15,11 +15,12 @@ from rotctl.checkpoint import Checkpoints
 from rotctl.documents import from_yaml
 from rotctl.encoding import encoded
 from rotctl.errors import LogError
+from rotctl.identity import acting
 from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, encode_run
 from rotctl.log.schema import MODEL_PATH
 from rotctl.quiet import quiet
 from rotctl.run_folder import EncodedRun, open_published, publish
-from rotctl.scenario import ANEW, Making, Scenario, acting, build
+from rotctl.scenario import ANEW, Making, Scenario, build
 from rotctl.schema import Config
 from rotctl.simulation.loop import Look, nobody, simulate
 from rotctl.summary import Summary, broke_down, judged_again

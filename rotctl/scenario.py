@@ -1,10 +1,7 @@
 """The composition root: the only place that knows all the parts of a run."""
 
-import hashlib
-import json
-import re
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -13,12 +10,11 @@ import numpy as np
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.behaviours.similar import similar as asking
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similar import similar
 from rotctl.fit import require_fit
-from rotctl.log import SCHEMA_VERSION
+from rotctl.identity import run_id
 from rotctl.mechanics import model as models
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -28,7 +24,6 @@ from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
-from rotctl.motion import ReferenceSettings, load_clip
 from rotctl.same import kept
 from rotctl.schema import Config
 from rotctl.simulation import aloft, falling
@@ -36,9 +31,6 @@ from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
-from rotctl.written import to_dict
-
-DESCRIPTIVE = ("description", "source", "colour", "found_for", "said")
 
 
 @dataclass(frozen=True)
@@ -157,7 +149,7 @@ def _stepper(physics: Physics, model: Model) -> Stepper:
 
 
 # Nobody changes a model, so runs that differ in their seed or gains share one.
-_model = kept(most=8)(lru_cache(maxsize=8)(models.build))
+model_from = kept(most=8)(lru_cache(maxsize=8)(models.build))
 
 
 def model_of(config: Config) -> Model:
@@ -166,21 +158,12 @@ def model_of(config: Config) -> Model:
     Raises:
         InputError: the numbers do not make a model.
     """
-    return _model(*model_parts(config))
+    return model_from(*model_parts(config))
 
 
 def model_parts(config: Config) -> tuple[Any, ...]:
     """What its model is built of: character, terrain, and what `_world` gives."""
     return config.character, config.terrain, *_world(config)
-
-
-def model_hash(*parts: Any) -> str:
-    """Of the model of such parts, but for what only colours it.
-
-    Raises:
-        InputError: the numbers do not make a model.
-    """
-    return _hash_without_looks(_model(*parts).mjcf)
 
 
 def _varied(config: Config, variation: Variation) -> Model:
@@ -195,63 +178,3 @@ def _world(config: Config) -> tuple[Physics, float, int, float]:
     seed = config.seed if terrain.seeded else 0
     reach = 0.0 if terrain.endless else FASTEST * config.duration
     return config.physics, config.controller.rate, seed, reach
-
-
-def run_id(config: Config, model: Model) -> str:
-    """See `identity`."""
-    return identity(config, _hash_without_looks(model.mjcf))
-
-
-def identity(config: Config, model: str) -> str:
-    """Hash of what acts: the config, the log's schema version, the model and the clip followed.
-
-    What only describes or colours does not act, nor do the criteria: they judge what was simulated.
-
-    Args:
-        model: the hash of its model.
-
-    Raises:
-        InputError: there is no such clip.
-    """
-    parts = {
-        "config": {
-            name: _hash_of_part(part)
-            for name, part in to_dict(config).items()
-            if name != "criteria"
-        },
-        "schema": SCHEMA_VERSION,
-        "model": model,
-    }
-    reference = getattr(config.behaviour, "reference", None)
-    if reference:
-        parts["clip"] = _hash_of_clip(reference)  # a name or path says not what is in it
-    if isinstance(config.behaviour, ChainSettings):
-        said = [getattr(one.behaviour, "reference", None) for one in config.behaviour.parts]
-        parts["clips"] = [_hash_of_clip(one) for one in said if one]
-    return _hash(parts)[:12]
-
-
-def _hash(plain: Any) -> str:
-    return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
-
-
-@kept(most=1000)
-def _hash_of_part(part: Any) -> str:
-    return _hash(acting(part))
-
-
-@lru_cache(maxsize=8)
-def _hash_without_looks(mjcf: str) -> str:
-    return _hash(re.sub(r' rgba="[^"]*"', "", mjcf))
-
-
-@kept(most=100)
-def _hash_of_clip(reference: ReferenceSettings) -> str:
-    return _hash(asdict(load_clip(reference.clip)))
-
-
-def acting(part: Any) -> Any:
-    """Plain data without the keys that act on nothing."""
-    if isinstance(part, dict):
-        return {key: acting(value) for key, value in part.items() if key not in DESCRIPTIVE}
-    return [acting(value) for value in part] if isinstance(part, list | tuple) else part

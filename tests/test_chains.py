@@ -13,6 +13,7 @@ from rotctl.chained import composed
 from rotctl.config import load
 from rotctl.control.similar import similar_gains
 from rotctl.errors import InputError
+from rotctl.identity import run_id
 from rotctl.log import RunLog
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.chain import Link, spans
@@ -22,7 +23,7 @@ from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at
 from rotctl.results.table import table
 from rotctl.run import in_memory, run
-from rotctl.scenario import build, run_id
+from rotctl.scenario import build
 from rotctl.schema import check
 from rotctl.simulation.known import StateSettings
 from rotctl.summary import links_of, summarise

@@ -14,6 +14,7 @@ from rotctl import scenario
 from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
+from rotctl.identity import run_id
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
@@ -177,14 +178,15 @@ def test_an_experiment_has_a_folder_of_its_name_and_other_sweeps_want_one(
 
 def test_hills_are_compiled_once_a_seed_to_name_the_runs(monkeypatch):
     """Whatever else varies, and however many seeds: a grid took as long to plan as to simulate."""
-    built, build = [], scenario._model
-    monkeypatch.setattr(scenario, "_model", lambda *parts: built.append(parts) or build(*parts))
+    built, build = [], scenario.model_from
+    made = "rotctl.sweep.plan.model_from"
+    monkeypatch.setattr(made, lambda *parts: built.append(parts) or build(*parts))
     grid = ["controller.pose.weight=1,2,3", "terrain=uneven", "seed=range(0,10)", "duration=0.1"]
     found = planned(points([grid]))
     assert (len(found), len(built)) == (30, 10)
     for run in (found[0], found[29]):
         config = load([f"{key}={value}" for key, value in run.values.items()])
-        assert run.run_id == scenario.run_id(config, scenario.model_of(config))
+        assert run.run_id == run_id(config, scenario.model_of(config))
 
 
 def test_runs_of_other_sweeps_that_claims_would_be_judged_over_are_told(cli, tmp_path):

@@ -8,6 +8,7 @@ from typing import Any
 
 from rotctl import same
 from rotctl.errors import InputError, LogError
+from rotctl.identity import identity, model_hash
 from rotctl.log import LOG_NAME, RunLog, collect
 from rotctl.results import index
 from rotctl.results.code import code_of, code_version
@@ -15,7 +16,7 @@ from rotctl.results.configs import config_of
 from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
 from rotctl.run import by_other_criteria, same_criteria
 from rotctl.run_folder import has_all_beside, open_published, publish
-from rotctl.scenario import identity, model_hash, model_parts
+from rotctl.scenario import model_from, model_parts
 from rotctl.schema import Config
 from rotctl.summary import Summary
 from rotctl.sweep.assignments import MOST_POINTS
@@ -66,7 +67,8 @@ def planned(points: Iterable[Point]) -> list[Planned]:
         InputError: a point makes no model.
     """
     runs: dict[str, Planned] = {}
-    hashed = same.kept(MOST_POINTS)(model_hash)  # hills are drawn and compiled once a seed
+    # Hills are drawn and compiled once a seed.
+    hashed = same.kept(MOST_POINTS)(lambda *parts: model_hash(model_from(*parts)))
     for point in points:
         config = point.config
         name = identity(config, hashed(*model_parts(config)))
