@@ -48,7 +48,7 @@ def log_of(height=0.95, stands=STANDS, turns=None, lean=0.0, speed=0.0, touched=
 
 
 def test_a_roll_that_stands_up():
-    columns, reason = judge(log_of(), FINISH, ASKED, PERIOD, 0.99)
+    columns, reason = judge(log_of(), FINISH, ASKED, PERIOD, 0.99, whole=True)
     assert reason == ""
     assert columns["revolutions"] == pytest.approx(4.0, abs=0.02), "until it is told"
     assert columns["duration"] == pytest.approx(16.0)
@@ -73,7 +73,7 @@ def test_a_roll_that_stands_up():
     ],
 )
 def test_what_it_does_instead(changes, said):
-    assert judge(log_of(**changes), FINISH, ASKED, PERIOD, 0.99)[1] == said
+    assert judge(log_of(**changes), FINISH, ASKED, PERIOD, 0.99, whole=True)[1] == said
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_who_came_upright_too_late_had_no_time_to_rest(lean, touched, turns, ear
     log = log_of(stands=540, lean=lean, touched=touched)
     log["trajectory/phase"] = 2 * np.pi * 0.5 * np.minimum(log["trajectory/time"], PERIOD * TOLD)
     counted = {"finish_commanded": 0.0, "revolutions_commanded": turns, "revolutions_told": 3.0}
-    columns, reason = judge(log, FINISH, ASKED | counted, PERIOD, 0.99)
+    columns, reason = judge(log, FINISH, ASKED | counted, PERIOD, 0.99, whole=True)
     assert reason
     told = too_short(log, FINISH, ASKED | counted, columns, PERIOD)
     assert told == early * (
@@ -103,7 +103,7 @@ def test_who_came_upright_too_late_had_no_time_to_rest(lean, touched, turns, ear
 def test_a_roll_that_stalls_and_stands_up_late_has_stalled():
     stalls = 0.5 * PERIOD * np.minimum(np.arange(STEPS), 240)
     log = log_of(turns=stalls, stands=900)
-    columns, reason = judge(log, FINISH, ASKED, PERIOD, 0.99)
+    columns, reason = judge(log, FINISH, ASKED, PERIOD, 0.99, whole=True)
     assert reason.startswith("stalled for ")
     assert too_short(log, FINISH, ASKED, columns, PERIOD) == ""
 
@@ -117,7 +117,7 @@ def test_a_roll_that_is_counted():
     roll, told = rolled(log, asked)
     assert len(roll["trajectory/time"]) == 540
     assert told == pytest.approx(6.25)
-    columns, reason = judge(log, FINISH, asked, PERIOD, 0.99)
+    columns, reason = judge(log, FINISH, asked, PERIOD, 0.99, whole=True)
     assert reason == ""
     assert columns["told_at"] == told
     assert rolled(log, counted | {"revolutions_told": 4.5}).told == np.inf
@@ -129,7 +129,7 @@ def test_what_never_began_has_no_numbers():
     empty = {
         name: rows if name.startswith("model/") else rows[:0] for name, rows in log_of().items()
     }
-    columns, reason = judge(empty, FINISH, ASKED, PERIOD, 0.99)
+    columns, reason = judge(empty, FINISH, ASKED, PERIOD, 0.99, whole=True)
     assert reason
     assert np.isnan(columns["stands_from"])
     assert np.isnan(columns["stands_at"])
@@ -140,7 +140,7 @@ def test_what_never_began_has_no_numbers():
     [(0.65, 0.68, True), (0.57, 0.68, False), (0.86, 1.13, False), (0.57, np.nan, True)],
 )
 def test_how_high_it_stands_is_judged_by_its_size(height, upright, stands):
-    reason = judge(log_of(height=height), FINISH, ASKED, PERIOD, upright)[1]
+    reason = judge(log_of(height=height), FINISH, ASKED, PERIOD, upright, whole=True)[1]
     assert reason == ("" if stands else f"stands {height:.2f} m high")
 
 

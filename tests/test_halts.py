@@ -28,7 +28,7 @@ THROUGH = progress((0, 0), (20, 10))
 def judged(turns, halts):
     log = make_log(steps=len(turns), turns=turns)
     log["trajectory/com"][:, 0] = 1.8 * turns
-    found = measure(log, CRITERIA, 0.5, PERIOD, halts)
+    found = measure(log, CRITERIA, 0.5, PERIOD, True, halts)
     return found, failure_reason(found, CRITERIA, 20.0)
 
 

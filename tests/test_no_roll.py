@@ -67,9 +67,8 @@ def roll():
 
 
 def verdict(config, arrays):
-    metrics = measure(
-        arrays, config.criteria, config.behaviour.angular_velocity, 1 / config.controller.rate
-    )
+    rate, period = config.behaviour.angular_velocity, 1 / config.controller.rate
+    metrics = measure(arrays, config.criteria, rate, period, whole=True)
     return failure_reason(metrics, config.criteria, config.duration)
 
 

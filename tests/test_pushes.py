@@ -1,5 +1,6 @@
 """Pushes at a phase, who rolls on after one, and the map of it."""
 
+from dataclasses import replace
 from itertools import islice
 from math import nan, radians, tau
 from xml.etree import ElementTree as Xml
@@ -183,6 +184,18 @@ def test_what_the_end_cuts_short_is_not_called_unrecovered():
         assert broken["recovered"] == 0.0
         known[end] = not np.isnan(whole["recovered"])
     assert known == {4.0: False, 5.0: False, 5.5: False, 6.0: True}
+
+
+def test_a_roll_that_is_to_end_on_its_feet_and_breaks_off_has_not_recovered():
+    config = load([*PUSH, "behaviour=forward_roll", "+finish=stand", "disturbance.impulse=1"])
+    buffer, _ = in_memory(build(replace(config, duration=2.0)))
+    asked = config.behaviour.commanded
+    whole, broken = (
+        judge(buffer.arrays(), config.criteria, asked, 1 / 60, wanted).columns["recovered"]
+        for wanted in (2.0, config.duration)
+    )
+    assert np.isnan(whole)
+    assert broken == 0.0
 
 
 @pytest.mark.parametrize(

@@ -185,7 +185,7 @@ def test_turned_about(flip):
 
 
 def test_a_steady_roll():
-    found = measure(make_log(), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(), CRITERIA, 0.5, PERIOD, whole=True)
     assert found.duration == pytest.approx(10.0)
     assert found.revolutions == pytest.approx(0.5 * 599 / 60)
     assert found.angular_velocity_mean == pytest.approx(0.5)
@@ -210,7 +210,7 @@ def test_a_steady_roll():
 
 def test_backward_rolling_counts_forward_when_commanded():
     log = make_log(rate=-0.5, speed=-0.9)
-    found = measure(log, CRITERIA, -0.5, PERIOD)
+    found = measure(log, CRITERIA, -0.5, PERIOD, whole=True)
     assert found.revolutions == pytest.approx(0.5 * 599 / 60)
     assert found.angular_velocity_mean == pytest.approx(-0.5)
     assert found.speed_mean == pytest.approx(-0.9)
@@ -218,7 +218,7 @@ def test_backward_rolling_counts_forward_when_commanded():
     assert found.trunk_turn == pytest.approx(1.0, abs=1e-3)
     assert found.travel_least == pytest.approx(1.8, abs=0.02)
     assert failure_reason(found, CRITERIA, 10.0) == ""
-    wrong_way = measure(log, CRITERIA, 0.5, PERIOD)
+    wrong_way = measure(log, CRITERIA, 0.5, PERIOD, whole=True)
     assert wrong_way.revolutions == pytest.approx(-0.5 * 599 / 60)
     assert wrong_way.longest_stall == pytest.approx(599 / 60)
 
@@ -226,7 +226,7 @@ def test_backward_rolling_counts_forward_when_commanded():
 @pytest.mark.parametrize("heading", [-50.0, -3.0, 20.0, 170.0])
 def test_heading_is_positive_to_the_left(heading):
     """Turned about +z: from +x, rolling ahead, towards +y."""
-    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD, whole=True)
     assert found.heading_error_end == pytest.approx(heading)
 
 
@@ -234,25 +234,25 @@ def test_heading_is_the_median_of_the_last_second():
     heading = np.full(600, 80.0)
     heading[-60:] = 10.0
     heading[-60:-35] = -90.0  # less than half of it
-    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD, whole=True)
     assert found.heading_error_end == pytest.approx(10.0)
 
 
 def test_a_heading_about_face_is_not_averaged_away():
     """Half the samples at +179 and half at -179 degrees are no heading of 0."""
     heading = np.where(np.arange(600) % 2, 179.0, -179.0)
-    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(heading=heading), CRITERIA, 0.5, PERIOD, whole=True)
     assert abs(found.heading_error_end) > 170.0
 
 
 @pytest.mark.parametrize("lateral", [-0.2, 0.2])
 def test_lateral_drift_is_from_the_start(lateral):
-    found = measure(make_log(lateral=lateral), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(lateral=lateral), CRITERIA, 0.5, PERIOD, whole=True)
     assert found.lateral_drift == pytest.approx(0.2 * 599 / 60)
     assert found.lateral_rms == pytest.approx(found.lateral_drift / 3**0.5, rel=2e-3)
     log = make_log()
     log["trajectory/com"][300, 1] -= 1.25  # the largest, not the last
-    assert measure(log, CRITERIA, 0.5, PERIOD).lateral_drift == pytest.approx(1.25)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).lateral_drift == pytest.approx(1.25)
 
 
 def test_means_leave_the_settling_out():
@@ -260,7 +260,7 @@ def test_means_leave_the_settling_out():
     settled = round(CRITERIA.settle / PERIOD)
     log["trajectory/com"][:settled, 0] -= 100.0
     log["trajectory/angular_excursion"][:settled, 1] += 100.0
-    found = measure(log, CRITERIA, 0.5, PERIOD)
+    found = measure(log, CRITERIA, 0.5, PERIOD, whole=True)
     assert found.speed_mean == pytest.approx(0.9)
     assert found.angular_velocity_mean == pytest.approx(0.5)
 
@@ -268,16 +268,16 @@ def test_means_leave_the_settling_out():
 def test_torque_fraction_is_of_each_joint_s_limit():
     log = make_log()
     log["trajectory/ctrl"][:] = [-5.0, 5.0]
-    assert measure(log, CRITERIA, 0.5, PERIOD).torque_p99_fraction == pytest.approx(0.5)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).torque_p99_fraction == pytest.approx(0.5)
     log["trajectory/ctrl"][:, 1] = -18.0
-    assert measure(log, CRITERIA, 0.5, PERIOD).torque_p99_fraction == pytest.approx(0.9)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).torque_p99_fraction == pytest.approx(0.9)
 
 
 def test_airborne_is_the_share_without_contact():
     log = make_log()
     log["contacts/count"][100:250] = 0
     log["contacts/count"][300:] = 7
-    assert measure(log, CRITERIA, 0.5, PERIOD).airborne == pytest.approx(0.25)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).airborne == pytest.approx(0.25)
 
 
 def test_jerk_is_that_of_a_known_motion():
@@ -286,7 +286,7 @@ def test_jerk_is_that_of_a_known_motion():
     log["trajectory/qvel"][:, 6] = np.sin(w * PERIOD * np.arange(1200))
     log["trajectory/qvel"][:, :6] = np.random.default_rng(0).normal(size=(1200, 6))  # no joints
     expected = w**2 / np.sqrt(2) / np.sqrt(2)
-    assert measure(log, CRITERIA, 0.5, PERIOD).jerk == pytest.approx(expected, rel=0.01)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).jerk == pytest.approx(expected, rel=0.01)
 
 
 def test_chatter_counts_bodies_not_slots():
@@ -298,7 +298,7 @@ def test_chatter_counts_bodies_not_slots():
     body[300:, 1:] = 7
     used[300:, 1:] = True
     body[400:, 0] = 4  # there, but not used
-    assert measure(log, CRITERIA, 0.5, PERIOD).chatter == pytest.approx(2 / 10)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).chatter == pytest.approx(2 / 10)
 
 
 def test_what_control_keeps_still_sticks_where_the_ground_hardly_carries_it():
@@ -309,19 +309,19 @@ def test_what_control_keeps_still_sticks_where_the_ground_hardly_carries_it():
     used[:, :3] = True
     force[:, 0, 2] = 500.0
     force[150:, 2, 1] = -20.0
-    assert measure(log, CRITERIA, 0.5, PERIOD).sticking == pytest.approx(150 / 1200)
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).sticking == pytest.approx(150 / 1200)
 
 
 def test_only_steps_without_any_solver_are_failures():
     log = make_log()
     log["solver/status"][[3, 4, 5]] = 1
     log["solver/status"][[7, 9]] = 2
-    assert measure(log, CRITERIA, 0.5, PERIOD).solver_failures == 2
+    assert measure(log, CRITERIA, 0.5, PERIOD, whole=True).solver_failures == 2
 
 
 @pytest.mark.parametrize("steps", [1, 2, 30])
 def test_short_logs(steps):
-    found = measure(make_log(steps=steps), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(steps=steps), CRITERIA, 0.5, PERIOD, whole=True)
     assert found.duration == pytest.approx(steps * PERIOD)
     later = (
         "angular_velocity_mean",
@@ -339,7 +339,7 @@ def test_short_logs(steps):
 
 
 def test_empty_log():
-    found = measure(make_log(steps=0), CRITERIA, 0.5, PERIOD)
+    found = measure(make_log(steps=0), CRITERIA, 0.5, PERIOD, whole=True)
     assert (found.duration, found.revolutions, found.solver_failures) == (0.0, 0.0, 0)
     assert np.isnan([found.heading_error_end, found.penetration, found.setback]).all()
     assert failure_reason(found, CRITERIA, 20.0) == "ended after 0.00 of 20 s"
@@ -531,7 +531,7 @@ LIES = {
 def test_what_looks_like_a_roll_by_some_measures_is_none(lie):
     """It is refused by the rule that is meant for it, and would pass without that rule."""
     log, rules, reason = LIES[lie]
-    found = measure(log, CRITERIA, 0.5, PERIOD)
+    found = measure(log, CRITERIA, 0.5, PERIOD, whole=True)
     assert failure_reason(found, CRITERIA, 10.0).startswith(reason)
     without = replace(CRITERIA, **{rule: OFF[rule] for rule in rules})
     assert failure_reason(found, without, 10.0) == ""
@@ -547,7 +547,7 @@ def test_every_rule_has_a_lie_that_it_finds():
 def test_a_run_of_less_than_a_revolution_says_nothing():
     """Too short to stall: a body at rest would pass."""
     for rate in (0.0, 0.5):
-        found = measure(make_log(steps=80, rate=rate), CRITERIA, 0.5, PERIOD)
+        found = measure(make_log(steps=80, rate=rate), CRITERIA, 0.5, PERIOD, whole=True)
         reason = f"no whole revolution: turned {rate * 79 / 60:.2f} rev"
         assert failure_reason(found, CRITERIA, 80 * PERIOD) == reason
 

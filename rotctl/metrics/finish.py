@@ -104,6 +104,7 @@ def judge(
     commanded: Mapping[str, float],
     period: float,
     upright: float,
+    whole: bool,
     halts: Halts = (),
 ) -> tuple[dict[str, Any], str]:
     """Columns of a run, and why it is no success; empty if it is one.
@@ -112,13 +113,14 @@ def judge(
         commanded: what was asked for; see `RollingSettings.commanded`.
         period: of the control [s].
         upright: see the function of that name [m]; NaN where nobody knows, and any height will do.
+        whole: whether the run went on for as long as it was to.
         halts: when it is told to halt, and until when [s].
     """
     row, steps = begins(log), len(np.asarray(log["command/stage"]))
     counted = commanded.get("revolutions_commanded", 0.0)
     part, told = rolled(log, commanded)
     direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
-    roll = rolling.measure(part, criteria.roll, direction, period, halts)
+    roll = rolling.measure(part, criteria.roll, direction, period, whole, halts)
     rest = max(row, steps - round(criteria.stand.rest / period))
     end = Excerpt(log, slice(rest, None))
     settings = replace(criteria.stand, height=1e-3)  # of what it was at first: a squat

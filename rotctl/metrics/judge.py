@@ -134,11 +134,11 @@ def judge(
     elif isinstance(criteria, RollingCriteria | FinishCriteria):
         direction = commanded.get("angular_velocity_commanded", 1.0)  # a pace is forward
         if isinstance(criteria, FinishCriteria):
-            found, reason = finish.judge(log, criteria, commanded, period, upright, halts)
+            found, reason = finish.judge(log, criteria, commanded, period, upright, whole, halts)
             rolling_log = finish.rolled(log, commanded).log
             settle, stall = criteria.roll.settle, criteria.roll.stall_progress
         else:
-            rolled = rolling.measure(log, criteria, direction, period, halts, whole)
+            rolled = rolling.measure(log, criteria, direction, period, whole, halts)
             found, reason = dict(vars(rolled)), failure_reason(rolled, criteria, wanted)
             del found["stalled_at"], found["went_on"]  # of people's interest in a reason alone
             rolling_log, settle, stall = log, criteria.settle, criteria.stall_progress

@@ -206,8 +206,8 @@ def measure(
     criteria: RollingCriteria,
     commanded: float,
     period: float,
+    whole: bool,
     halts: Halts = (),
-    whole: bool = True,
 ) -> RollingMetrics:
     """Measure a roll.
 
@@ -215,8 +215,8 @@ def measure(
         log: arrays by schema path, a `RunLog` or a buffer's; may have no rows.
         commanded: in-plane angular velocity [rev/s]; its sign is the direction of progress.
         period: of the control [s].
-        halts: when it is told to halt, and until when [s].
         whole: whether the run went on for as long as it was to.
+        halts: when it is told to halt, and until when [s].
     """
     com = along_way(log)
     steps = len(com)

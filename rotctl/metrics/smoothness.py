@@ -89,5 +89,5 @@ def recovery(
         if along and progress[row + ahead] - progress[row] >= limits.recovery_progress:
             taken = (row - first) * period
             return {"recovery": taken, "recovered": float(taken <= limits.recovery_time)}
-    too_late = whole and last <= first + round(limits.recovery_time / period)
-    return {"recovery": math.nan, "recovered": math.nan if too_late else 0.0}
+    untold = whole and last <= first + round(limits.recovery_time / period)
+    return {"recovery": math.nan, "recovered": math.nan if untold else 0.0}
