@@ -48,6 +48,7 @@ def own_file(
     """The file of the user's that is at fault, for a message to begin with; else nothing.
 
     It is at fault if the choices among the overrides are wrong already, by themselves.
+    Nothing, too, where several are chosen and the complaint names none of them.
 
     Args:
         made: what a config is made to, where that complains.
@@ -63,7 +64,8 @@ def own_file(
         if str(error) == complaint:
             named = [path for group, path in mine.items() if f"{group}." in complaint]
             found = named or list(mine.values())
-            return f"{found[0]}: " if named or len(found) == 1 else ""  # else it is how they meet
+            # Of several that it does not name none need be wrong: it may be how they meet.
+            return f"{found[0]}: " if named or len(found) == 1 else ""
     return ""
 
 

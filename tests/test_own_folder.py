@@ -198,6 +198,15 @@ def test_a_file_is_named_for_what_only_the_making_of_its_run_finds(here, capsys)
     assert "names the unknown joint 'elbo'; did you mean elbow? " in found
 
 
+def test_no_file_is_named_for_how_two_of_ones_own_meet(here, capsys):
+    path = make("behaviour", "my_roll", "reference_roll")
+    make("criteria", "mine", "standing")
+    said = "criteria={} does not judge behaviour=my_roll, a behaviour of kind rolling"
+    for criteria, named in (("mine", ""), ("standing", f"{path.resolve()}: ")):
+        assert main(["run", "behaviour=my_roll", f"criteria={criteria}", "duration=0.1"]) == 2
+        assert capsys.readouterr().err.startswith(f"rotctl: {named}{said.format(criteria)}")
+
+
 @pytest.mark.parametrize(
     ("call", "complaint"),
     [
