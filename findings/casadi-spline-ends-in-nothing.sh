@@ -7,7 +7,7 @@
 #   and at the next floating-point number 0: a table of 100 N m over 0 to 0.3 s has 0 N m at 0.1 + 0.2 s.
 # Seen with: casadi 3.8.2, ca.interpolant.
 # Means: a muscle longer than its curve has no force, a foot beyond the height field stands on nothing, and a reference read at the sum of
-#   the time steps ends on 0: a jump in the cost of the last node, without a gradient that leads back. A table of many values near 0 hides it. Widen the
+#   the time steps ends on 0: a jump in the cost of the last node, without a gradient that leads back. A table that ends near 0 hides it. Widen the
 #   grid by a point at each end, or bring the argument inside by fmin and fmax.
 set -euo pipefail
 work=$(mktemp -d)

@@ -7,7 +7,7 @@
 #   of what is measured and its correlation with the state, where Q is missing. A state of variance 1 after a step of
 #   noise 3, measured with noise 1: the gain is 0.5 in place of 0.8, the variance afterwards 3.5 in place of 0.8. A place seen ten times a second
 #   to 1 cm, of what is accelerated by 20 m/s2 at random: velocities are 1.4 m/s off in place of 0.6, and it thinks that it knows
-#   the place to 10 cm in place of 1. With little noise a step it is near the others, and steady throughout.
+#   the place to 10 cm in place of 1. With little process noise it is near the others, and it does not diverge.
 # Seen with: filterpy 2.0.0, CubatureKalmanFilter beside KalmanFilter and UnscentedKalmanFilter.
 # Means: a comparison of filters on limbs that hit the ground says that cubature is worse, and tests by its covariance let everything pass.
 #   Before update draw the points again: f.sigmas_f = spherical_radial_sigmas(f.x, f.P).
@@ -71,7 +71,7 @@ for k in range(1, steps):
 seen = way[:, 0] + rng.normal(0.0, blur, steps)
 errors = {}
 for kind in KINDS:
-    f = made(kind, F, H, np.outer(G, G) * kick**2 + 1e-12 * np.eye(2), np.array([[blur**2]]), np.eye(2))
+    f = made(kind, F, H, np.outer(G, G) * kick**2, np.array([[blur**2]]), np.eye(2))
     found = np.array([step(kind, f, z) for z in seen])
     errors[kind] = float(np.sqrt(((found - way)[50:, 1] ** 2).mean()))
     thinks = 100.0 * float(np.sqrt(np.asarray(f.P)[0, 0]))

@@ -8,8 +8,8 @@
 #   19 off in the middle. 175 degrees one way and 175 the other about nearly opposite axes, 10 degrees apart, take 358 to meet; about
 #   opposite axes the axis comes out shorter than 1, and as 0 in the middle.
 # Seen with: pytransform3d 3.17.0, rotations.axis_angle_slerp, beside its own quaternion_slerp.
-# Means: a limb that leaves its rest pose swings out of the plane of its motion, and one near half a turn is thrown once round. Ends and
-#   norms look right. quaternion_slerp with shortest_path=True, of quaternion_from_axis_angle.
+# Means: a limb that leaves its rest pose swings out of the plane of its motion, and one near half a turn is thrown once round. Ends look
+#   right, and but for opposite axes the norms do. quaternion_slerp with shortest_path=True, of quaternion_from_axis_angle.
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
