@@ -4,7 +4,7 @@ Who is pushed from the side rolls on askew, its trunk leant over the feet to the
 to, for many revolutions. Its poses set the limbs beside the trunk, so that they come down on the
 other side, and no force of such contacts rights it. So a limb that sinks is brought to where it
 would be under a trunk that is not askew, and further by what the centre of mass goes aside in the
-meantime: as far as to the capture point, whose time is the pendulum's, sqrt(h / g).
+meantime, at most as far as to the capture point, whose time is the pendulum's, sqrt(h / g).
 """
 
 from typing import Annotated

@@ -28,7 +28,7 @@ from rotctl.motion import RollAbout
 from rotctl.rotations import dot
 from rotctl.settings import STRICT, Finite, NonNegative, Positive
 
-AHEAD = 0.9  # [rev] of the end of the last roll: it leaves the squat, hands on the ground
+AHEAD = 0.9  # [rev] before the last roll is over: it leaves the squat then, hands on the ground
 
 
 @validated(frozen=True, config=STRICT)

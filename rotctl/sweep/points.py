@@ -26,7 +26,7 @@ TAKEN = ("controller.", "excursion.")  # of a run, by parts of a chain without t
 Grids = list[list[list[Assignment]]]
 Bases = dict[tuple[str, ...], Config]
 Parts = dict[tuple[Any, ...], Any]
-NONE: frozenset[str] = frozenset()
+NOTHING_APART: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,10 @@ def _values(override: str) -> list[Assignment]:
 
 
 def _config(
-    assignments: Sequence[Assignment], bases: Bases, parts: Parts, apart: frozenset[str] = NONE
+    assignments: Sequence[Assignment],
+    bases: Bases,
+    parts: Parts,
+    apart: frozenset[str] = NOTHING_APART,
 ) -> Config:
     """As `config.load`, but quick where only plain values differ from an earlier point.
 
