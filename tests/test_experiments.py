@@ -6,6 +6,7 @@ import pytest
 from here import swept
 
 from rotctl.cli import main
+from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.listing import shipped
 from rotctl.metrics.claims import SUCCESS_RATE
@@ -114,6 +115,15 @@ def test_table_1_has_the_velocities_of_the_paper():
     for claim in found.claims:
         if claim.metric != SUCCESS_RATE:
             assert claim.tolerance == pytest.approx(0.15 * claim.expected)
+
+
+def test_table_1_is_of_one_set_of_gains_and_never_uses_the_head():
+    """As the paper's ten rolls."""
+    overrides = [row for grid in experiment("table1").matrix for row in grid]
+    configs = [load([one]) for one in overrides]
+    assert len(configs) == 10
+    assert all(config.controller == configs[0].controller for config in configs)
+    assert {config.character.exclude_from_control for config in configs} == {("head",)}
 
 
 def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys):

@@ -23,7 +23,8 @@ SAME = 1e-9  # of the largest torque, where no limit binds
 LIMITED = 1e-5  # [N m] where one does: the condensed form then squares its rows
 OPTIMAL = 1e-6  # what multipliers leave of the cost's slope, relative
 EPISODES = [  # 40 states each
-    ["behaviour=forward_roll_1", "seed=2001", "character.exclude_from_control=[head]"],
+    ["behaviour=forward_roll_1", "seed=2001"],
+    ["behaviour=backward_roll_1", "seed=2002", "character.exclude_from_control=[]"],
     ["behaviour=backward_roll_1", "seed=2002", "controller.supervisor=none"],
     ["behaviour=sideways_roll", "seed=2003", "disturbance=wind"],
     ["behaviour=terrain_roll", "seed=2004", "terrain=hazards"],

@@ -462,6 +462,20 @@ def test_a_move_that_does_not_roll_has_its_own_metrics_on_the_page_of_its_sweep(
     assert charts(alone)[0].heading == "Success rates with 95 % intervals"
 
 
+def test_the_page_of_a_sweep_has_the_share_that_rolled_on_after_a_push(sweep, tmp_path):
+    listed = index.read(sweep)
+    (sweep / index.INDEX_NAME).unlink()
+    writer = Writer(sweep, index.Index())
+    for row in listed.rows.values():
+        late = row.outcome["seed"] > 0
+        writer.add(row._replace(outcome={**row.outcome, "recovered": 0.0 if late else 1.0}))
+    writer.close()
+    report(sweep, tmp_path / "site")
+    text = " ".join(Page(tmp_path / "site" / "sweeps" / "table.html").text.split())
+    _, _, groups = text.partition("Rolled on in time after the push")
+    assert groups.count(" 33 %") == 2
+
+
 def test_who_fell_first_and_leans_most_is_the_worst_where_nothing_rolls():
     done = pd.DataFrame(
         {
