@@ -163,9 +163,9 @@ def test_what_was_said_of_a_part_does_not_act():
          "terrain=incline, and the run has terrain=flat; give the run terrain=incline"),
         (["stand", "baby_roll_over"], 'behaviour.parts.1="baby_roll_over": is for character=baby, '
          "and the run has character=adult; give the run character=baby"),
-        (["back_flip", "reference_roll"], 'behaviour.parts.1="reference_roll": is for '
-         "character=adult_on_head, and the run has character=adult; give the run "
-         "character=adult_on_head"),
+        (["back_flip", "forward_roll_1"], 'behaviour.parts.1="forward_roll_1": is for '
+         "character=adult_free_head, and the run has character=adult; give the run "
+         "character=adult_free_head"),
         (["stand", "stand ~behaviour.heading"], "behaviour.parts: \"stand '~behaviour.heading'\": "
          "behaviour.heading: missing, it cannot be left out"),
         (["stand", "back_flip behaviour.heading=90.0"], "behaviour.parts.1: "
@@ -243,15 +243,15 @@ def test_what_the_run_is_told_acts_on_the_parts_that_take_it():
 
 
 def test_a_part_may_be_for_the_terrain_of_the_run():
-    made = chain("stand", "incline", more=["terrain=incline"])
+    made = chain("stand", "incline", more=["terrain=incline", "character=adult_free_head"])
     assert made.behaviour.parts[-1].behaviour.name == "incline"
 
 
 def test_a_part_may_be_for_the_character_of_the_run():
     """One that asks for none is at home on any."""
-    made = chain("tip_over", "reference_roll", more=["character=adult_on_head"])
-    assert made.behaviour.parts[-1].behaviour.name == "reference_roll"
-    assert made.character.exclude_from_control == ()
+    made = chain("tip_over", "forward_roll_1", more=["character=adult_free_head"])
+    assert made.behaviour.parts[-1].behaviour.name == "forward_roll_1"
+    assert made.character.exclude_from_control == ("head",)
 
 
 @pytest.mark.parametrize("behaviour", ["forward_roll_twice", "rock_up"])
@@ -275,12 +275,12 @@ def test_as_many_parts_as_there_may_be():
 
 
 def test_a_log_roll_begins_lying():
-    config = chain("stand", "behaviour=sideways_roll")
+    config = chain("stand", "behaviour=log_roll")
     with pytest.raises(InputError) as caught:
         build(config)
     assert str(caught.value) == (
-        "behaviour.parts: 'sideways_roll': sideways_roll rolls about the head, lying, and cannot "
-        "begin from standing"
+        "behaviour.parts: 'log_roll': log_roll rolls about the head, lying, and cannot begin from "
+        "standing"
     )
 
 

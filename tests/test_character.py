@@ -278,7 +278,7 @@ def test_unknown_parent(world):
 def test_what_mujoco_refuses_is_one_line(world):
     bodies = (*world.config.character.bodies, world.config.character.bodies[-1])
     with pytest.raises(
-        InputError, match=r"^character 'adult_on_head' on terrain 'flat' does not compile: .*foot"
+        InputError, match=r"^character 'adult' on terrain 'flat' does not compile: .*foot"
     ) as error:
         rebuilt(world, bodies=bodies)
     assert "\n" not in str(error.value)
