@@ -159,8 +159,8 @@ def test_what_was_said_of_a_part_does_not_act():
          "behaviour.parts: 'back_flip behaviour.heading=" + "9" * 29 + "...': behaviour.heading="),
         (["back_flip behaviour.stages=[5]", "stand"], "behaviour.parts: \"back_flip "
          "'behaviour.stages=[5]'\": behaviour.stages.0=5: must be keys with values"),
-        (["incline +finish=stand", "stand"], 'behaviour.parts.0="incline +finish=stand": is for '
-         "terrain=incline, and the run has terrain=flat; give the run terrain=incline"),
+        (["decline_flowing", "stand"], 'behaviour.parts.0="decline_flowing": is for '
+         "terrain=decline, and the run has terrain=flat; give the run terrain=decline"),
         (["stand", "baby_roll_over"], 'behaviour.parts.1="baby_roll_over": is for character=baby, '
          "and the run has character=adult; give the run character=baby"),
         (["back_flip", "forward_roll_1"], 'behaviour.parts.1="forward_roll_1": is for '
@@ -265,7 +265,7 @@ def test_a_chain_of_an_own_character(tmp_path, behaviour):
 
 
 def test_the_first_part_heads_where_it_is_told():
-    first, _, last = chain("stand behaviour.heading=30", "backward_roll_1").behaviour.parts
+    first, _, last = chain("stand behaviour.heading=30", "backward_roll_1_on_head").behaviour.parts
     assert (first.behaviour.heading, last.behaviour.roll_about) == (30.0, "right")
 
 

@@ -76,8 +76,8 @@ def test_a_run_begins_where_another_one_was(recorded, here):
     """To rounding: every angle and every speed, over the same hills."""
     path = make("there", recorded, 0.5)
     assert path.read_text().startswith(
-        f'# From the run "{recorded.attributes["run_id"]}", character=adult, on terrain=uneven, '
-        "seed 3, at 0.50 s"
+        f'# From the run "{recorded.attributes["run_id"]}", character=adult_free_head, '
+        "on terrain=uneven, seed 3, at 0.50 s"
     )
     same_hills = ("terrain=uneven", "terrain.run_in=0", "seed=3")
     _, data = started("behaviour=get_up", "start=there", *same_hills, folder=here)
@@ -275,7 +275,7 @@ def test_a_strangers_name_of_a_run_stays_in_its_comment(recorded, here, tmp_path
     path = make("there", strange, None)
     assert yaml.safe_load(path.read_text())["pitch"] == [0.0, 0.0]
     assert path.read_text().startswith(
-        '# From the run "x\\npitch: [1.0, 1.0]", character=adult, on '
+        '# From the run "x\\npitch: [1.0, 1.0]", character=adult_free_head, on '
     )
 
 

@@ -39,7 +39,9 @@ def rolled(*overrides):
     buffer, complaint = in_memory(build(config))
     assert not complaint
     arrays, period = buffer.arrays(), 1.0 / config.controller.rate
-    metrics = measure(arrays, config.criteria, config.behaviour.angular_velocity, period)
+    metrics = measure(
+        arrays, config.criteria, config.behaviour.angular_velocity, period, whole=True
+    )
     return buffer, metrics, failure_reason(metrics, config.criteria, config.duration)
 
 
