@@ -186,20 +186,19 @@ def test_a_commanded_rate_of_turning_is_met():
 def test_who_stands_up_faces_where_the_way_led():
     """Who squats askew stands so, one in a few: of four starts the middle ones face along it."""
     aside = []
-    for seed in range(2001, 2005):
+    for seed in range(2000, 2004):
         log, judged = rolled(
-            *("+course=circle", "+finish=stand", "behaviour.finish.after=5", "duration=9"),
-            *("behaviour.angular_velocity=0.7", "behaviour.pace.brake=9", f"seed={seed}"),
+            *("+course=circle", "+finish=stand", "behaviour.finish.after=3", "duration=9"),
+            *("behaviour.angular_velocity=0.7", f"seed={seed}"),
         )
-        assert 5.0 <= judged.columns["stands_from"] < 8.5
+        assert 3.0 <= judged.columns["stands_from"] < 8.5
         stands = log["command/stage"] > 0
         front = log["trajectory/trunk_axes"][-1][:, 0]
         way = log["command/axes"][~stands][-1, 0]
         assert np.degrees(np.arctan2(way[1], way[0])) > 25.0, "it has come a way round"
         aside.append(np.degrees(np.arccos(front @ way)))
         assert (log["command/axes"][stands] == log["command/axes"][-1]).all()
-        turned = 4e-3  # [rad] in the step between: 1.3 m/s round 6 m
-        assert log["command/axes"][-1, 0] == pytest.approx(way, abs=turned)
+        assert log["command/axes"][-1, 0] == pytest.approx(way, abs=1e-3)
     assert np.median(aside) < 25.0
 
 

@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.rolling import (
-    IN_FILES_ONLY,
     OF_REVOLUTIONS,
     RollingCriteria,
     RollingMetrics,
@@ -17,6 +16,7 @@ from rotctl.metrics.rolling import (
 )
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about
+from rotctl.results.groups import OF_ROLLS_IN_FILES_ONLY
 
 PERIOD = 1.0 / 60.0
 CRITERIA = RollingCriteria(
@@ -553,7 +553,7 @@ def test_a_run_of_less_than_a_revolution_says_nothing():
 
 
 def test_what_only_files_show_is_measured():
-    assert set(IN_FILES_ONLY) < set(vars(GOOD))
+    assert set(OF_ROLLS_IN_FILES_ONLY) < set(vars(GOOD))
 
 
 @pytest.mark.parametrize("q", [0, 50, 95, 99, 100])

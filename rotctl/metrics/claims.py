@@ -48,7 +48,8 @@ class Claim:
     def __post_init__(self) -> None:
         if self.metric == SUCCESS_RATE and self.quantile != 0.5:
             raise ValueError(f"{SUCCESS_RATE} is one number of all runs and has no quantile")
-        if self.metric == SUCCESS_RATE and not (0.0 <= self.expected <= 1.0 > self.tolerance):
+        share = 0.0 <= self.expected <= 1.0 and self.tolerance < 1.0
+        if self.metric == SUCCESS_RATE and not share:
             raise ValueError(
                 f"expected={self.expected:g}, tolerance={self.tolerance:g}: {SUCCESS_RATE} is a "
                 "share of the runs, 0 to 1, and 5 % of them are 0.05"

@@ -174,21 +174,6 @@ OF_REVOLUTIONS = (
     "travel_least",
     "travel_most",
 )
-# Too many for a table that people read: files have them, and a failure names its own.
-IN_FILES_ONLY = (
-    *OF_REVOLUTIONS,
-    "setback",
-    "height_least",
-    "height_most",
-    "lateral_rms",
-    "penetration",
-    "ground_force_p99",
-    "ground_force_peak",
-    "jerk",
-    "chatter",
-    "sticking",
-)
-YES_OR_NO = ("recovered",)  # of many runs a share says more than a median
 _ZERO_AT_FIRST = (
     "duration",
     "revolutions",

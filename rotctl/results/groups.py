@@ -20,9 +20,23 @@ from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
 from rotctl.rotations import Array
 
-# Too many for a table that people read.
+YES_OR_NO = ("recovered",)  # of many runs a share says more than a median
+# Too many for a table that people read: files have them, and a failure names its own.
+OF_ROLLS_IN_FILES_ONLY = (
+    *rolling.OF_REVOLUTIONS,
+    "setback",
+    "height_least",
+    "height_most",
+    "lateral_rms",
+    "penetration",
+    "ground_force_p99",
+    "ground_force_peak",
+    "jerk",
+    "chatter",
+    "sticking",
+)
 IN_FILES_ONLY = {
-    *rolling.IN_FILES_ONLY,
+    *OF_ROLLS_IN_FILES_ONLY,
     *(column.name for kind in (appearance, pace, peaks) for column in kind.COLUMNS),
 }
 Name = tuple[object, ...]  # of a group: the values of its keys
@@ -119,7 +133,7 @@ def _measured(
             for metric, found in zip(metrics, _quartiles(values[with_result]), strict=True):
                 row |= {f"{metric}_{q}": x for q, x in zip(QUARTILES, found, strict=True)}
             for i, metric in enumerate(metrics):
-                if metric in rolling.YES_OR_NO:
+                if metric in YES_OR_NO:
                     there = values[with_result, i]
                     there = there[~np.isnan(there)]
                     row[f"{metric}_rate"] = float(there.mean()) if len(there) else None
