@@ -80,6 +80,8 @@ PACED = ("behaviour=forward_roll", "duration=2", "seed=2003")
         (*PACED, "behaviour.angular_velocity=0.3", "behaviour.pace.pose={knee:2.5,elbow_l:0.3}"),
         ("excursion=integral", "duration=1"),
         ("+behaviour.oblique=[12,5,-3,2,1]", "duration=1"),
+        ("+behaviour.lift=[0.1,0.2,-0.3,0.1,0.2]", "duration=1"),
+        (*PACED, "+behaviour.lift=[0.1,0.2,-0.3]", "duration=1"),
         ("behaviour.poses.a.knee=[1.9,0.1,-0.2,0.1,0.1,-0.05,0.07]", "duration=1"),
         ("behaviour.angular_momentum=30", "duration=1"),
         ("controller.supervisor=modified", "duration=1"),
@@ -136,7 +138,7 @@ def test_c_knows_what_a_roll_can_be_asked():
     assert {field.name for field in fields(RollingSettings)} == {
         *("name", "kind", "roll_about", "angular_velocity", "speed", "heading"),
         *("align_with_slope", "poses", "reference", "angular_momentum", "pace", "finish"),
-        *("course", "catch", "oblique", "alighting"),
+        *("course", "catch", "oblique", "alighting", "lift"),
         *("source", "description"),
     }
 

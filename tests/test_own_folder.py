@@ -332,7 +332,7 @@ def test_a_wrong_key_in_a_file_of_ones_own_is_told_with_the_file(here, cli, comm
     assert error == (
         f"rotctl: {path}: unknown key 'behaviour.sped'; did you mean speed? "
         f"valid keys under behaviour: {KEYS}, angular_momentum, pace, finish, course, catch, "
-        "oblique, alighting, source, description\n"
+        "oblique, alighting, lift, source, description\n"
     )
     path.write_text(path.read_text().replace("sped: 1.0\n", ""))  # an override is no fault of it
     assert cli("show", "behaviour=mine", "behaviour.sped=1")[2].startswith("rotctl: unknown key")

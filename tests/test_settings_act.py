@@ -150,6 +150,7 @@ CASES = {
         seconds=2.0,
     ),
     "oblique": Case(("+behaviour.oblique=[12,5,-3]",), r"behaviour\.oblique.*"),
+    "lift": Case(("+behaviour.lift=[0.2,0.1,-0.3]",), r"behaviour\.lift.*"),
     "path": Case(
         ("behaviour=forward_roll", "+course=slalom", "behaviour.course.legs=[[0.3,10],[0.3,-5]]"),
         r"behaviour\.course\..*",

@@ -140,6 +140,11 @@ class CompiledRoll:
         self.constants.oblique_waves = len(oblique)
         self.constants.oblique[: len(oblique)] = oblique
 
+    def add_lift(self, lift: Sequence[float]) -> None:
+        """Go up and down as it turns, see `Lift` [m/rev]."""
+        self.constants.lift_waves = len(lift)
+        self.constants.lift[: len(lift)] = lift
+
     def _at(self, array: Any) -> int:
         self._kept.append(array)
         return int(array.ctypes.data)

@@ -12,7 +12,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from rotctl.motion import pairs_after_a_mean
+from rotctl.motion import over_phase, pairs_after_a_mean
 from rotctl.native.layout import constant
 from rotctl.rotations import Array
 from rotctl.settings import Finite
@@ -29,8 +29,5 @@ def axis(side: Array, up: Array, oblique: Sequence[float] | None, phase: float) 
     """The axis (3,) at a phase [rad], unit, between a trunk's `side` and `up` (3,), unit."""
     if oblique is None:
         return side
-    total = oblique[0]
-    for n in range(1, len(oblique) // 2 + 1):
-        total += oblique[2 * n - 1] * cos(n * phase) + oblique[2 * n] * sin(n * phase)
-    tilt = radians(total)
+    tilt = radians(over_phase(oblique, phase))
     return cos(tilt) * side + sin(tilt) * up

@@ -36,6 +36,7 @@ from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
+from rotctl.motion import over_phase
 from rotctl.rotations import Array, advance, dot
 
 if TYPE_CHECKING:  # which makes this one
@@ -68,6 +69,7 @@ class Rolling:
         self.axes = axes = self._bearing.frame.axes
         self._measured, self._follows = measured, settings.course is not None
         self._period, self._oblique = 1.0 / control.rate, settings.oblique
+        self._lift = settings.lift
         self._rate, self._speed = 2.0 * math.pi * settings.angular_velocity, settings.speed
         given = settings.pace
         self._pace = (
@@ -150,6 +152,9 @@ class Rolling:
             self._damping[1, 1] *= wanted.brake
             phase -= math.tau * wanted.back
             waits = wanted.waits
+        if self._lift is not None:
+            turning = float(dot(on.frame.axes[1], state.momentum.angular_velocity)) / math.tau
+            self._velocities[0] += turning * over_phase(self._lift, now.phase) * UP
         pose_a, pose_b = self._poses.at(phase)
         if self._waiting is not None:
             settled = self._waiting.settled
@@ -215,6 +220,8 @@ class Rolling:
         )
         if self._oblique is not None:
             made.add_oblique(self._oblique)
+        if self._lift is not None:
+            made.add_lift(self._lift)
         if self._catch is not None:
             made.add_catch(self._catch)
         if self._alighting is not None:

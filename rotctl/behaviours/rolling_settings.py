@@ -10,6 +10,7 @@ from rotctl.behaviours.alighting import AlightingSettings
 from rotctl.behaviours.catching import CatchSettings
 from rotctl.behaviours.course import CourseSettings
 from rotctl.behaviours.finishing import AHEAD, Finishing, FinishSettings
+from rotctl.behaviours.lifting import Lift
 from rotctl.behaviours.obliqueness import Oblique
 from rotctl.behaviours.pacing import Halts, PaceSettings
 from rotctl.behaviours.rolling import Rolling
@@ -50,6 +51,7 @@ class RollingSettings:
         oblique: how far the axis that is kept lies from there towards the head, over the phase, see
             `Oblique` [deg]; not at all by default.
         alighting: which limbs come down further to the side that it goes to; none by default.
+        lift: how far it is told to rise as it turns, see `Lift` [m/rev]; not at all by default.
     """
 
     name: str
@@ -68,6 +70,7 @@ class RollingSettings:
     catch: CatchSettings | None = None
     oblique: Oblique | None = None
     alighting: AlightingSettings | None = None
+    lift: Lift | None = None
     source: str = ""
     description: str = ""
 

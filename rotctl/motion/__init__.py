@@ -8,6 +8,7 @@ from rotctl.motion.pose_pair import (
     Turn,
     make_pose,
     make_pose_pair,
+    over_phase,
     pairs_after_a_mean,
 )
 from rotctl.motion.reference import ReferencePair, ReferenceSettings, make_reference_pair
@@ -25,5 +26,6 @@ __all__ = [
     "make_pose",
     "make_pose_pair",
     "make_reference_pair",
+    "over_phase",
     "pairs_after_a_mean",
 ]

@@ -6,7 +6,7 @@ on. A joint name without a side stands for both sides; joints not named are held
 the phase is clipped to the joints' ranges, which it may well pass; a single one must keep to them.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, sin
 from typing import Annotated
@@ -35,6 +35,14 @@ def pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
     if len(waves) % 2 == 0:
         raise ValueError(f"must be a mean with pairs of cosine and sine, not {len(waves)} numbers")
     return waves
+
+
+def over_phase(waves: Sequence[float], phase: float) -> float:
+    """Such numbers at a phase [rad]."""
+    total = waves[0]
+    for n in range(1, len(waves) // 2 + 1):
+        total += waves[2 * n - 1] * cos(n * phase) + waves[2 * n] * sin(n * phase)
+    return total
 
 
 def _form(angle: object) -> str:

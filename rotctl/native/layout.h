@@ -127,8 +127,8 @@ typedef struct {
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;
-  double oblique[WAVES];
-  int column, integral, rows, waves, oblique_waves;
+  double oblique[WAVES], lift[WAVES];
+  int column, integral, rows, waves, oblique_waves, lift_waves;
   const double *table, *rise, *coefficients, *low, *high, *waiting;
   const Pace* pace;
   const Catch* catch;

@@ -4,12 +4,17 @@
 #include "rotations.h"
 #include "small.h"
 
+// motion/pose_pair.py `over_phase`
+static double over_phase(const double* waves, int count, double phase) {
+  double total = waves[0];
+  for (int n = 1; 2 * n < count; n++)
+    total += waves[2 * n - 1] * cos(n * phase) + waves[2 * n] * sin(n * phase);
+  return total;
+}
+
 // behaviours/obliqueness.py: the trunk's axis that should stay on the rolling axis
 static void incline(const Roll* r, const double* trunk, RollMemory* it) {
-  double tilt = r->oblique[0];
-  for (int n = 1; 2 * n < r->oblique_waves; n++)
-    tilt += r->oblique[2 * n - 1] * cos(n * it->phase) + r->oblique[2 * n] * sin(n * it->phase);
-  tilt *= mjPI / 180;
+  double tilt = over_phase(r->oblique, r->oblique_waves, it->phase) * (mjPI / 180);
   for (int i = 0; i < 3; i++) it->axis[i] = cos(tilt) * it->axis[i] + sin(tilt) * trunk[3 * i + 2];
 }
 
@@ -134,7 +139,13 @@ static void roll_on(const Self* s, const mjData* d, const Roll* r, const Reading
                     RollMemory* it, const Command* w) {
   turn_along(r, now, it);
   double back = 0, waits = 0;
+  double* up = r->task[0].velocity + 2;
+  *up = r->velocity[2];
   if (r->pace) keep_pace(r, d, now, it, &back, &waits);
+  if (r->lift_waves) {
+    double turns = along(r->axes + 3, now->angular_velocity) / (2 * mjPI);
+    *up += turns * over_phase(r->lift, r->lift_waves, it->phase);
+  }
   poses_at(r, it->phase - back, s->nu, w->pose_a, w->pose_b);
   if (r->waiting) {
     settle(r->waiting, waits, s->nu, w->pose_a);

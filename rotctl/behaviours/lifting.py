@@ -1,0 +1,22 @@
+"""A roll that is told to go up and down: who pushes himself up over his hands, as it turns.
+
+The height of a roll has no target, only a damper on how fast it changes, and so on every push. A
+way upwards over the phase, times how fast it turns, lets it push there and no more: who hardly
+turns is not held up, and who falls back is let down again.
+"""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from rotctl.motion import pairs_after_a_mean
+from rotctl.native.layout import constant
+from rotctl.settings import Finite
+
+Lift = Annotated[
+    tuple[Annotated[Finite, Field(ge=-3, le=3)], ...],
+    Field(min_length=1, max_length=constant("WAVES")),
+    AfterValidator(pairs_after_a_mean),
+]
+"""What the centre of mass is told to rise by as it turns [m/rev]: mean, cosine and sine over the
+phase, ..."""
