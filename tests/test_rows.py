@@ -56,6 +56,26 @@ def test_it_rolls(row):
     assert sum(1 for _ in islice(filter(rolls, range(4)), 3)) == 3
 
 
+@pytest.mark.parametrize("row", ["backward_roll_1", "backward_roll_2"])
+def test_who_rolls_backward_pushes_himself_up_over_the_hands(row):
+    """Elbows straighten by 40 degrees from 0.5 to 0.74 rev (18 in a roll that only comes over)."""
+    buffer, metrics, _ = rolled(f"behaviour={row}", "seed=2001")
+    log = buffer.arrays()
+    names = np.asarray(log["model/joint"]).astype(str).tolist()
+    elbows = [7 + i for i, name in enumerate(names) if name.startswith("elbow")]
+    late = log["trajectory/time"] > 1.5
+    turn = (log["trajectory/phase"] / (2.0 * np.pi) % 1.0)[late]
+    bent = log["trajectory/qpos"][late][:, elbows].mean(axis=1)
+    pelvis = log["trajectory/qpos"][late][:, 2]
+
+    def about(values, phase):
+        return float(np.median(values[np.abs(turn - phase) < 0.03]))
+
+    assert metrics.revolutions > 3.0
+    assert np.degrees(about(bent, 0.5) - about(bent, 0.74)) > 30.0
+    assert about(pelvis, 0.6) > 0.54
+
+
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
 def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_loins(physics):
     buffer, _, _ = rolled("behaviour=forward_roll_3", f"physics={physics}", "seed=2000")
