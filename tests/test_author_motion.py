@@ -26,7 +26,7 @@ SHIPPED = {
     "log_roll": "head",
 }
 FOUND_BY_SEARCH = dict.fromkeys(
-    ("forward_roll_2", "forward_roll_hands", "incline", "shoulder_roll", "terrain_roll"),
+    ("forward_roll_2", "forward_roll_hands", "shoulder_roll", "terrain_roll"),
     "left",
 )
 LOWERED = np.eye(adult().mj.nq)[2] * 1e-3  # by a millimetre, so that what rests there touches

@@ -207,7 +207,7 @@ def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypat
 
 def test_a_result_brings_what_its_behaviour_brings(whole, tmp_path):
     """Its ground, its excursion: without them it would be judged elsewhere than it was found."""
-    steep = replace(whole.search, overrides=["behaviour=steep"])  # which builds on terrain_roll
+    steep = replace(whole.search, overrides=["behaviour=steep"])  # which builds on incline
     made = result.choices(replace(whole, search=steep))
     (tmp_path / "behaviour").mkdir()
     (tmp_path / "behaviour" / "small_tuned.yaml").write_text(made["behaviour"])
