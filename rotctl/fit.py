@@ -3,11 +3,13 @@
 from collections.abc import Sequence
 from functools import cache
 
+from rotctl import choosing
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain_settings import ChainSettings
 from rotctl.behaviours.placing import Watch
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
+from rotctl.checked import brief
 from rotctl.errors import InputError
 from rotctl.listing import content, shipped_files
 from rotctl.mechanics.bodies import body_id
@@ -33,6 +35,7 @@ def require_fit(config: Config, model: Model) -> None:
     behaviour = config.behaviour
     _require_judged(behaviour, config.criteria, model)
     _require_pulled(behaviour, config.excursion)
+    _require_halts(behaviour)
     if not isinstance(config.criteria, OrientationCriteria):
         _require_weight(behaviour, config.physics.gravity)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
@@ -77,6 +80,34 @@ def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -
 def _usual(key: str) -> float:
     """A pull's time that comes with rotctl [s]."""
     return float(content(shipped_files("excursion")["oriented"])[key])
+
+
+def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None:
+    """How a halt brakes is told where there is one; what a behaviour brings along is not told.
+
+    One that does not come with rotctl brings what it has: its file may be anywhere, or edited.
+    """
+    if isinstance(behaviour, ChainSettings):
+        for number, part in enumerate(behaviour.parts):
+            _require_halts(part.behaviour, f"{part.place(number)}: behaviour")
+    if not isinstance(behaviour, RollingSettings) or behaviour.pace is None or behaviour.halts:
+        return
+    told = behaviour.pace.easing
+    shipped = behaviour.name in shipped_files("behaviour")
+    brought = _easing(behaviour.name) if shipped else told
+    if told != brought:
+        raise InputError(
+            f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
+            f"which is a 0 in pace.schedule; leave it at {brief(brought)}"
+        )
+
+
+@cache
+def _easing(name: str) -> float | None:
+    """Of the pace of a behaviour that comes with rotctl [m/s]."""
+    made = choosing.composed([choosing.Assignment("behaviour", name)])
+    pace = made["behaviour"].get("pace") if made else None
+    return pace.get("easing") if pace else None
 
 
 def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:

@@ -89,7 +89,7 @@ CASES = {
     "clip": Case(("behaviour=reference_roll",), r"behaviour\.(?!align_with_slope).*"),
     "pace that waits": Case(
         ("behaviour=forward_roll", "behaviour.angular_velocity=0.4"),
-        r"behaviour\.pace\.(?!most|travel|easing).*",
+        r"behaviour\.pace\.(?!most|travel).*",
         seconds=2.5,
     ),
     "pace that waits down a slope": Case(
