@@ -111,8 +111,9 @@ def _composed(overrides: list[str]) -> dict[str, Any]:
         data = _set_on_choices(quick)
         if data is not None:
             return data
-    from rotctl.overrides import assigned, is_choice, single
+    from rotctl.overrides import assigned, is_choice, single, without_overruled
 
+    overrides = without_overruled(overrides)
     found = [single(override) for override in overrides]
     every = [(str(o.key_or_group), o.value()) for o in found if not o.is_delete()]
     labels.require_own(every, lambda: _of_choices(overrides))

@@ -6,9 +6,10 @@ stranger's override cannot execute code.
 
 import re
 from itertools import accumulate
+from typing import Any
 
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override, OverrideType
+from hydra.core.override_parser.types import ChoiceSweep, Glob, Override, OverrideType, Sweep
 from hydra.errors import HydraException
 
 from rotctl.checked import brief, clip
@@ -51,11 +52,25 @@ def parsed(override: str) -> Override:
             f"{shown}: cannot be read; write key=value, and quote a text with special "
             "characters: \"key='a text'\""
         ) from None
+    if _has_sweep(found.value() if not found.is_delete() else None):
+        raise InputError(
+            f"{shown}: range(...), interval(...) and glob(...) stand alone behind the '='; "
+            "write its values one by one, as in seed=0,1,7"
+        )
     if not found.key_or_group:
         raise InputError(f"{shown} has no key; write key=value, such as seed=3")
     if found.is_delete() and "=" in override:
         raise InputError(f"{shown}: to remove a key, write ~{found.key_or_group}")
     return found
+
+
+def _has_sweep(value: Any) -> bool:
+    """Whether a sweep is among other values, where Hydra reads it and cannot go through it."""
+    inside = value.list if isinstance(value, ChoiceSweep) else value
+    inside = list(inside.values()) if isinstance(inside, dict) else inside
+    return isinstance(inside, list) and any(
+        isinstance(each, Sweep | Glob) or _has_sweep(each) for each in inside
+    )
 
 
 def _with_value(word: str) -> str:
@@ -87,6 +102,22 @@ def single(override: str) -> Override:
         near = instead_of_many(value, valid, f"rotctl list {key}")
         raise InputError(f"{key}={brief(value)}: no such choice; {near}")
     return found
+
+
+def without_overruled(overrides: list[str]) -> list[str]:
+    """Without those that have several values, where a later one sets the same key to one.
+
+    So a file of overrides that is for a sweep is for a run, too.
+
+    Raises:
+        InputError: one of them cannot be read.
+    """
+    keys = [override.partition("=")[0] for override in overrides]
+    return [
+        override
+        for number, (key, override) in enumerate(zip(keys, overrides, strict=True), 1)
+        if key not in keys[number:] or not parsed(override).is_sweep_override()
+    ]
 
 
 def assigned(found: Override) -> Assignment | None:

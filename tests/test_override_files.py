@@ -57,6 +57,14 @@ def test_the_later_word_counts(here, capsys):
     assert (shown["seed"], shown["duration"]) == (3, 6.0)
 
 
+def test_a_file_for_a_sweep_is_for_a_run_that_says_which(here, capsys):
+    file = written(here, "{seed: 'range(0,20)', start: 'rest,tucked', duration: 2.0}")
+    assert api.load([file, "seed=3", "start=rest"]) == load(["seed=3", "start=rest", "duration=2"])
+    for words in ([file, "seed=3"], ["seed=3", "start=rest", file]):
+        assert main(["show", *words]) == 2
+        assert "run takes one value for" in capsys.readouterr().err
+
+
 def test_a_text_is_as_on_the_command_line(here, capsys):
     file = written(here, 'seed: range(0,3)\n"~finish":\nterrain: flat,incline\n')
     assert expanded([file]) == ["seed=range(0,3)", "~finish", "terrain=flat,incline"]

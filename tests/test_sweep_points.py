@@ -48,6 +48,12 @@ def test_the_last_key_varies_fastest(grid, expected):
     assert overrides(*grid) == expected
 
 
+def test_a_shuffled_value_is_what_its_text_says():
+    found = values("seed=shuffle(range(0,40))")
+    assert sorted(one.value for one in found) == list(range(40))
+    assert [one.text for one in found] == [f"seed={one.value}" for one in found]
+
+
 def test_glob_is_over_the_choices_of_a_group():
     found = overrides("behaviour=glob(*,exclude=*_phase)")
     wanted = [name for name in choices("behaviour") if not name.endswith("_phase")]
@@ -107,6 +113,15 @@ def test_the_values_are_those_of_the_config():
         (["seed=glob(*)"], "seed=glob(*): no such group"),
         (["seed=interval(0,1)"], "seed=interval(0,1): has no steps; write seed=range(start,stop"),
         (["seed=range(3,3)"], "seed=range(3,3): has no values"),
+        *(
+            ([f"seed={endless}"], f"seed={endless}: cannot be counted through; write seed=range(st")
+            for endless in ("range(0,3,0)", "range(0,1,0.0)", "range(nan)", "range(0,3,nan)")
+        ),
+        *(
+            ([f"start={mixed}"], f"override 'start={mixed}': range(...), interval(...) and glob(")
+            for mixed in ("range(0,3),7", "interval(0,1),2", "rest,glob(*)", "[range(0,3)]")
+        ),
+        (["seed=shuffle(range(0,1e12))"], "the sweep has more than 100000 points; make several"),
         (
             ["seed=range(0,1000)", "duration=range(1,1000)"],
             "the sweep has more than 100000 points; make several",

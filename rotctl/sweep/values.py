@@ -1,8 +1,12 @@
 """One override with one or more values -> each value by itself, as Hydra reads it."""
 
+from dataclasses import replace
 from itertools import islice
+from random import sample
+from typing import Any
 
-from hydra.core.override_parser.types import Glob, Override, OverrideType, Transformer
+from hydra.core.override_parser.types import Glob, Override, OverrideType, RangeSweep, Transformer
+from hydra.errors import HydraException
 
 from rotctl import plain
 from rotctl.errors import InputError
@@ -31,18 +35,35 @@ def values(override: str) -> list[Assignment]:
             some = f"no choice matches; valid: {', '.join(valid)}" if valid else "no such group"
             raise InputError(f"{override}: {some}")
         return [_read(f"{found.get_key_element()}={name}") for name in names]
-    texts = list(islice(found.sweep_string_iterator(), MOST_POINTS + 1))
-    if not texts:
+    each = _each(override, found)
+    if not each:
         raise InputError(f"{override}: has no values")
     element = found.get_key_element()
     way, ordered = _way(found)
-    each = list(islice(found.sweep_iterator(Transformer.identity), len(texts)))
+    texts = [f"{element}={Transformer.str(value)}" for value in each]
     return [
-        Assignment(f"{element}={text}", key, way, value, ordered)
+        Assignment(text, key, way, value, ordered)
         if way is not None and type(value) in (bool, int, float)
-        else _read(f"{element}={text}")
+        else _read(text)
         for text, value in zip(texts, each, strict=True)
     ]
+
+
+def _each(override: str, found: Override) -> list[Any]:
+    """The values of a sweep, at most one more than a sweep may have points."""
+    wide, mixed = found.value(), False
+    if isinstance(wide, RangeSweep) and wide.shuffle:  # Hydra would make a list of all it may have
+        wide, mixed = replace(wide, shuffle=False), True
+    try:
+        each = replace(found, _value=wide).sweep_iterator(Transformer.identity)
+        values = list(islice(each, MOST_POINTS + 1))
+    except (HydraException, ValueError, ArithmeticError):
+        key = found.key_or_group
+        raise InputError(
+            f"{override}: cannot be counted through; write {key}=range(start,stop,step) with "
+            "finite numbers and a step that is not 0"
+        ) from None
+    return sample(values, len(values)) if mixed else values
 
 
 def _read(override: str) -> Assignment:
