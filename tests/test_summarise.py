@@ -87,6 +87,10 @@ def test_runs_that_are_the_same_make_no_interval_narrower():
     assert low < wilson(1, 2)[1] < 0.99 < high
 
 
+def test_wilson_of_all_and_of_none_ends_where_rates_do():
+    assert all(wilson(n, n)[1] == 1.0 and wilson(0, n)[0] == 0.0 for n in range(1, 200))
+
+
 def test_wilson_of_nothing_says_nothing():
     assert wilson(0, 0) == (0.0, 1.0)
 
@@ -223,6 +227,34 @@ def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep):
     (row,) = groups.rows.to_dict("records")
     assert (row["n"], row["succeeded"], row["no_result"]) == (4, 3, 2)
     assert "| 4 | 2         | 75 % [30, 95]  |" in markdown(groups)
+
+
+def test_a_run_that_is_not_there_is_told_in_its_group(tmp_path):
+    """What a behaviour brings along makes columns, and the run has them as its group does."""
+    sweep = swept(tmp_path, "behaviour=forward_roll_1,stand", "seed=range(0,2)", "duration=0.5")
+    rows = table(sweep).rows
+    (sweep / rows["log"][rows["behaviour"] == "stand"].iloc[0]).unlink()
+    found = grouped(table(sweep))
+    assert "controller" in found.keys
+    rows = found.rows.set_index("behaviour")
+    assert list(rows.index) == ["forward_roll_1", "stand"]
+    assert (rows["n"]["stand"], rows["no_result"]["stand"]) == (1, 1)
+    assert rows["controller"]["stand"] == "standing"
+
+
+def test_rows_whose_logs_are_not_there_are_told(sweep, tmp_path, capsys):
+    """Of a sweep without a list of its runs, as of two whose rows were joined."""
+    joined = tmp_path / "joined"
+    joined.mkdir()
+    shutil.copy(sweep / "runs.jsonl", joined)
+    told = f"{joined}/runs.jsonl: 6 of its runs had logs that are not there, left out"
+    assert main(["summarise", str(joined)]) == 2
+    assert capsys.readouterr().err == f"rotctl: {joined}: no runs in it: {told}\n"
+    for log in sorted(sweep.glob("*/run.h5"))[:2]:
+        shutil.copytree(log.parent, joined / log.parent.name)
+    assert main(["summarise", str(joined)]) == 0
+    assert capsys.readouterr().err == told.replace("6 of", "4 of") + "\n"
+    assert table(sweep).notes == []
 
 
 def test_a_damaged_log_is_a_row_and_leftovers_are_not(sweep):

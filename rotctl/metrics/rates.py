@@ -18,4 +18,5 @@ def wilson(succeeded: int, n: int, distinct: int | None = None) -> tuple[float, 
     rate, share = succeeded / n, z * z / apart
     middle = (rate + share / 2) / (1 + share)
     half = z / (1 + share) * sqrt(rate * (1 - rate) / apart + share / (4 * apart))
-    return max(0.0, middle - half), min(1.0, middle + half)
+    low = middle - half if succeeded else 0.0  # and not what rounding leaves of it
+    return low, middle + half if succeeded < n else 1.0

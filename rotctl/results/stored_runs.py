@@ -58,7 +58,7 @@ def stored_runs(folder: Path) -> tuple[list[StoredRun], list[str]]:
     """
     if not os.path.isdir(folder):
         raise InputError(f"{folder}: no such folder")
-    places, notes = _places(folder)
+    places, gone, notes = _places(folder)
     entries: dict[str, Entry] = {}
     runs: dict[str, StoredRun] = {}
     copies = []
@@ -74,18 +74,27 @@ def stored_runs(folder: Path) -> tuple[list[StoredRun], list[str]]:
         else:
             runs[run.run_id] = run
     missing = [_unlogged(entry) for name, entry in entries.items() if name not in runs]
+    for at, names in gone.items():
+        lost = names - runs.keys() - entries.keys()  # what a sweep.jsonl lists is told as not run
+        if lost:
+            notes.append(f"{at}: {len(lost)} of its runs had logs that are not there, left out")
     if not runs and not missing:
-        raise InputError(f"{folder}: no runs in it; rotctl sweep --out {folder} makes some")
+        why = f": {notes[-1]}" if notes else f"; rotctl sweep --out {folder} makes some"
+        raise InputError(f"{folder}: no runs in it{why}")
     known = [_with_values(run, entries) for run in runs.values()]
     return known + missing, notes + copies
 
 
-def _places(folder: Path) -> tuple[list[tuple[str, Row | None]], list[str]]:
-    """Where logs and manifests lie below a folder, with the rows of indices; and notes.
+def _places(
+    folder: Path,
+) -> tuple[list[tuple[str, Row | None]], dict[str, set[str]], list[str]]:
+    """Where logs and manifests lie below a folder, with the rows of indices.
 
-    An index is believed of a log that nobody has touched since, and where none was kept.
+    An index is believed of a log that nobody has touched since, and where none was kept. Also told
+    are, for each index, the runs whose logs were kept and are not there, and notes.
     """
     places: list[tuple[str, Row | None]] = []
+    gone: dict[str, set[str]] = {}
     notes = []
     for at, inside, names in os.walk(folder):
         places += [(f"{at}/{name}", None) for name in names if name in (LOG_NAME, MANIFEST_NAME)]
@@ -96,11 +105,14 @@ def _places(folder: Path) -> tuple[list[tuple[str, Row | None]], list[str]]:
             notes.append(f"{at}/{INDEX_NAME}: {listed.damaged} lines damaged, left out")
         for row in listed.rows.values():
             log = f"{at}/{row.run_id}/{LOG_NAME}"
-            if (index.stamp(log) if row.run_id in there else None) == row.log:
+            found = index.stamp(log) if row.run_id in there else None
+            if found == row.log:
                 there.discard(row.run_id)
                 places.append((log, row))
+            elif found is None:
+                gone.setdefault(f"{at}/{INDEX_NAME}", set()).add(row.run_id)
         inside[:] = there
-    return places, notes
+    return places, gone, notes
 
 
 def _indexed(row: Row, log: str) -> StoredRun:

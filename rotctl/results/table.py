@@ -73,8 +73,34 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
                 "trajectory": run.trajectory,
             }
         )
+    _fill(rows, runs, columns)
     rows.sort(key=lambda row: [_order(row[name]) for name in [*columns.values(), "run_id"]])
     return Table(pd.DataFrame(rows), list(columns.values()), metrics, notes + _missing(runs))
+
+
+def _fill(rows: list[dict[str, Any]], runs: Sequence[StoredRun], columns: dict[str, str]) -> None:
+    """Give rows without a config what all runs have of whom the sweep says the same but the seed.
+
+    So a run that is not there is told beside those of its group, and makes none of its own.
+    """
+    lacking = [(row, run.values) for row, run in zip(rows, runs, strict=True) if not run.config]
+    known = [row for row, run in zip(rows, runs, strict=True) if run.config]
+    for told in {tuple(key for key in values if key != "seed") for _, values in lacking if values}:
+        others = [name for key, name in columns.items() if key not in (*told, "seed")]
+        alike: dict[tuple[Any, ...], list[set[Any]]] = {}
+        for row in known:
+            said = tuple(row[columns[key]] for key in told)
+            each = alike.setdefault(said, [set() for _ in others])
+            for values, name in zip(each, others, strict=True):
+                values.add(row[name])
+        for row, values_told in lacking:
+            if tuple(key for key in values_told if key != "seed") == told:
+                found = alike.get(tuple(row[columns[key]] for key in told), [])
+                row |= {
+                    name: next(iter(values))
+                    for values, name in zip(found, others, strict=False)
+                    if len(values) == 1
+                }
 
 
 def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
