@@ -113,7 +113,28 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
             {"jerk": "1"},
             "objective: metric jerk: there is a column of that name already",
         ),
+        (
+            ["objective", "columns"],
+            {"head_share": {"weight": 1.0, "low": 0.5, "high": 0.1, "miss": 0.1}},
+            "objective.columns.head_share: low=0.5 must not exceed high=0.1",
+        ),
+        (
+            ["objective", "metrics"],
+            {"top": "max(com[:, 2])"},
+            "objective: metric top: acts on nothing, no column of that name is wished for",
+        ),
+        (
+            ["objective"],
+            {"over_runs": "mean", "pace": 0.6}
+            | dict.fromkeys(("survival", "progress", "drift", "heading"), 0.0),
+            "objective: all weights are 0, so that no run is better than another",
+        ),
         (["runs"], None, "runs=null: must be keys with values"),
+        (
+            ["runs"],
+            {"seeds": 2, "duration": 3.0, "final": 9, "variations": [[], [], ["seed_=3"]]},
+            "runs.variations: 3 of them, and with seeds=2 the last never come",
+        ),
         (
             ["runs", "first_seed"],
             999_999,

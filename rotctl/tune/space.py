@@ -106,6 +106,8 @@ class Wish:
     def __post_init__(self) -> None:
         if self.low is None and self.high is None:
             raise ValueError("give low, high or both")
+        if self.low is not None and self.high is not None and self.low > self.high:
+            raise ValueError(f"low={self.low:g} must not exceed high={self.high:g}")
 
     def missed(self, value: float) -> float:
         """By how much of `miss` a value is outside, at most 1; all of it if it is no number."""
@@ -143,6 +145,9 @@ class Objective:
     metrics: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        weights = [self.survival, self.progress, self.drift, self.heading, self.success]
+        if not any(weights + [wish.weight for wish in self.columns.values()]):
+            raise ValueError("all weights are 0, so that no run is better than another")
         try:
             expression.read_all(self.metrics)
         except InputError as error:
@@ -150,6 +155,10 @@ class Objective:
         for name in self.metrics:
             if name in ROLLING:
                 raise ValueError(f"metric {name}: there is a column of that name already")
+            if name not in self.columns:
+                raise ValueError(
+                    f"metric {name}: acts on nothing, no column of that name is wished for"
+                )
         for name in self.columns:
             if name not in (*ROLLING, *self.metrics):
                 raise ValueError(
@@ -189,6 +198,14 @@ class Runs:
     final: Count
     first_seed: Annotated[int, Strict(), AfterValidator(_training)] = TRAINING_SEEDS
     variations: Annotated[tuple[Overrides, ...], Field(min_length=1)] = ([],)
+
+    def __post_init__(self) -> None:
+        most, told = min(self.seeds, self.final), len(self.variations)
+        if told > most:
+            key = "seeds" if self.seeds == most else "final"
+            raise ValueError(
+                f"variations: {told} of them, and with {key}={most} the last never come"
+            )
 
 
 @validated(frozen=True, config=STRICT)
