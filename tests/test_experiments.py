@@ -105,6 +105,17 @@ def test_a_claim_that_nobody_can_test_is_refused_before_the_sweep(
     assert not out.exists()
 
 
+def test_a_deviation_of_no_run_is_refused_as_well(tmp_path, monkeypatch, capsys):
+    (tmp_path / "experiments").mkdir()
+    text = OWN.replace("METRIC", "lean_most").replace("WHERE", "")
+    deviations = "deviations: [{text: x}, {text: y, where: {behaviour: stnad}}]"
+    (tmp_path / "experiments" / "mine.yaml").write_text(text + deviations)
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
+    assert main(["sweep", "+experiment=mine", "--out", str(tmp_path / "out"), "--dry-run"]) == 2
+    said = "rotctl: +experiment=mine: deviations.1: where: no run of its grid has behaviour stnad; "
+    assert capsys.readouterr().err.startswith(said)
+
+
 def test_table_1_has_the_velocities_of_the_paper():
     found = experiment("table1")
     expected = {claim.id: claim.expected for claim in found.claims}

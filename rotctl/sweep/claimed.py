@@ -23,7 +23,8 @@ Values = tuple[Mapping[str, Any], Config]  # of the overridden keys, and of all
 def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
     """See that the claims of the experiment that is named, if one is, are about what is measured.
 
-    A claim about runs that further overrides leave out is one that nobody tests this time.
+    Deviations are about its runs, too. A claim about runs that further overrides leave out is one
+    that nobody tests this time.
 
     Args:
         runs: that the overrides make.
@@ -32,8 +33,10 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
         InputError: a metric is none, or no run of the experiment's own grid is one of `where`.
     """
     name = experiments.named(list(overrides))
-    claims = experiments.experiment(name).claims if name else []
-    for claim in claims:
+    if not name:
+        return
+    read = experiments.experiment(name)
+    for claim in read.claims:
         if claim.metric not in METRICS:
             raise InputError(
                 f"{experiments.PREFIX}{name}: claim {claim.id}: metric: no {claim.metric!r} is "
@@ -41,16 +44,17 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
                 f"{instead(claim.metric, METRICS)}"
             )
     here: list[Values] = [(run.values, run.config) for run in runs]
-    absent = [claim for claim in claims if not _any(claim.where, here)]
+    told = [(f"claim {claim.id}", claim.where) for claim in read.claims]
+    told += [(f"deviations.{i}", deviation.where) for i, deviation in enumerate(read.deviations)]
+    absent = [(who, where) for who, where in told if not _any(where, here)]
     if absent and len(overrides) > 1:
         own = experiments.matrix([f"{experiments.PREFIX}{name}", "seed=0"])
         here = [(point.values, point.config) for point in points(own)]
-        absent = [claim for claim in absent if not _any(_without_seed(claim.where), here)]
-    if absent:
-        claim = absent[0]
+        absent = [(who, where) for who, where in absent if not _any(_without_seed(where), here)]
+    for who, where in absent:
         raise InputError(
-            f"{experiments.PREFIX}{name}: claim {claim.id}: where: no run of its grid has "
-            f"{_wrong(claim.where, here)}"
+            f"{experiments.PREFIX}{name}: {who}: where: no run of its grid has "
+            f"{_wrong(where, here)}"
         )
 
 
