@@ -150,6 +150,14 @@ def test_overrides_and_options_may_be_mixed(cli, made):
         ([*RUN, "seed"], "rotctl: override 'seed' has no '='; write key=value, such as seed=3"),
         ([*RUN, "--out", ""], "rotctl run: argument --out: the name is empty; "
          "see rotctl run --help"),
+        (["summarise", ""], "rotctl summarise: argument DIR: the name is empty; "
+         "see rotctl summarise --help"),
+        (["verify", ""], "rotctl verify: argument RUN.h5: the name is empty; "
+         "see rotctl verify --help"),
+        (["render", "x.h5", "--filmstrip", "x.png", "--video", "x.avi"],
+         "rotctl: x.avi: valid endings: .mp4"),
+        (["render", "x.h5", "--video", "x.mp4", "--frames", "3"],
+         "rotctl: --frames=3: is of a filmstrip; a video has 30 a second"),
         ([*RUN, "--frce"], "rotctl run: unrecognized arguments: --frce (did you mean "
          "--force?); see rotctl run --help"),
         ([*RUN, "--forc"], "rotctl run: unrecognized arguments: --forc (did you mean "

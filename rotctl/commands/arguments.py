@@ -22,8 +22,8 @@ OVERRIDES_HELP = (
 LOG_HELP = "a log, the folder of its run, or its id in runs/"
 
 
-def folder_name(text: str) -> Path:
-    """A folder that need not be there yet."""
+def path_name(text: str) -> Path:
+    """A file or a folder, which need not be there; an empty name would be the folder one is in."""
     if not text:
         raise argparse.ArgumentTypeError("the name is empty")
     return Path(text)

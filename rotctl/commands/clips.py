@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rotctl.bars import bar, following
 from rotctl.clip_wording import import_warnings, imported
-from rotctl.commands.arguments import Commands, folder_name, role_and_name
+from rotctl.commands.arguments import Commands, path_name, role_and_name
 from rotctl.errors import InputError
 from rotctl.wording import printable
 
@@ -29,7 +29,7 @@ def add_import(commands: Commands) -> None:
         "turns and how well the loop closes.",
     )
     command.add_argument(
-        "file", type=Path, metavar="FILE", help=".bvh, .amc, .txt, .json, .npz or .csv"
+        "file", type=path_name, metavar="FILE", help=".bvh, .amc, .txt, .json, .npz or .csv"
     )
     command.add_argument(
         "--cycle",
@@ -38,7 +38,7 @@ def add_import(commands: Commands) -> None:
         help="of the roll [s] [the one that closes best]",
     )
     command.add_argument(
-        "--skeleton", type=Path, metavar="FILE.asf", help="of an .amc [the .asf of its name]"
+        "--skeleton", type=path_name, metavar="FILE.asf", help="of an .amc [the .asf of its name]"
     )
     command.add_argument("--rate", type=float, metavar="HZ", help="frame rate [the file's]")
     command.add_argument(
@@ -53,7 +53,10 @@ def add_import(commands: Commands) -> None:
         help="which joint is what, as left_hip=Bone_7, where its name does not say",
     )
     command.add_argument(
-        "--model", type=Path, metavar="ROBOT.xml", help="whose joints a .csv or .npz has (MJCF)"
+        "--model",
+        type=path_name,
+        metavar="ROBOT.xml",
+        help="whose joints a .csv or .npz has (MJCF)",
     )
     command.add_argument(
         "--symmetric", action="store_true", help="the mean of the roll and its mirror image"
@@ -101,7 +104,7 @@ def add_author(commands: Commands) -> None:
         description="Make a clip of the key poses of one cycle, as in conf/motion/keys/: smooth "
         "between them, its phase linear in how far the body has turned.",
     )
-    command.add_argument("file", type=Path, metavar="KEYS.yaml")
+    command.add_argument("file", type=path_name, metavar="KEYS.yaml")
     _add_clip_options(command)
     _add_character(command)
     command.set_defaults(command=author_motion, interrupted="an unfinished clip is not written")
@@ -124,7 +127,7 @@ def add_preview(commands: Commands) -> None:
         description="Draw one cycle of a clip as it rolls over the ground; nothing is simulated.",
     )
     command.add_argument("clip", metavar="CLIP", help="a name in conf/motion/, or a .yaml file")
-    command.add_argument("--out", type=Path, required=True, metavar="OUT.png")
+    command.add_argument("--out", type=path_name, required=True, metavar="OUT.png")
     command.add_argument(
         "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
     )
@@ -188,7 +191,7 @@ def _draw_clip(model: "Model", clip: "Clip", out: Path, frames: int) -> None:
 
 def _add_clip_options(command: argparse.ArgumentParser) -> None:
     command.add_argument(
-        "--out", type=folder_name, required=True, metavar="CLIP.yaml", help="the clip"
+        "--out", type=path_name, required=True, metavar="CLIP.yaml", help="the clip"
     )
     command.add_argument("--filmstrip", action="store_true", help="also draw CLIP.png beside it")
 

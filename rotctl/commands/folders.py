@@ -9,6 +9,7 @@ from rotctl.commands.arguments import (
     RUNS,
     Commands,
     log_file,
+    path_name,
     role_and_name,
     run_folder,
     second,
@@ -72,8 +73,8 @@ def add_inspect_model(commands: Commands) -> None:
         "--out writes it as a character, such as conf/character/NAME.yaml, to be changed and "
         "chosen with character=NAME.",
     )
-    command.add_argument("file", type=Path, metavar="ROBOT.xml")
-    command.add_argument("--out", type=Path, metavar="NAME.yaml")
+    command.add_argument("file", type=path_name, metavar="ROBOT.xml")
+    command.add_argument("--out", type=path_name, metavar="NAME.yaml")
     command.add_argument(
         "--map",
         type=role_and_name,
@@ -129,7 +130,7 @@ def add_ls(commands: Commands) -> None:
         "behaviour, and how it ended.",
     )
     command.add_argument(
-        "folder", type=Path, nargs="?", default=RUNS, metavar="DIR", help="[%(default)s]"
+        "folder", type=path_name, nargs="?", default=RUNS, metavar="DIR", help="[%(default)s]"
     )
     command.set_defaults(command=ls)
 
@@ -155,8 +156,8 @@ def add_diff(commands: Commands) -> None:
         description="Compare two logs, or two folders of runs: the config's values that differ, "
         "and the figures (of a folder median and quartiles).",
     )
-    command.add_argument("one", type=Path, metavar="A", help="RUN.h5, or a folder")
-    command.add_argument("other", type=Path, metavar="B")
+    command.add_argument("one", type=path_name, metavar="A", help="RUN.h5, or a folder")
+    command.add_argument("other", type=path_name, metavar="B")
     command.set_defaults(command=diff)
 
 

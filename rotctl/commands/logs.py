@@ -2,10 +2,10 @@
 
 import argparse
 import sys
-from pathlib import Path
 
+from rotctl import files
 from rotctl.bars import bar, following
-from rotctl.commands.arguments import LOG_HELP, Commands, log_file, second
+from rotctl.commands.arguments import LOG_HELP, Commands, log_file, path_name, second
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
 
@@ -17,22 +17,20 @@ def add_render(commands: Commands) -> None:
         help="draw pictures of a logged run",
         description="Draw a run from its log alone; nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--filmstrip",
-        type=Path,
+        type=path_name,
         metavar="OUT.png",
         help="side view that follows the character, frame beside frame",
     )
     command.add_argument(
         "--video",
-        type=Path,
+        type=path_name,
         metavar="OUT.mp4",
         help="the same view as a film, 30 frames/s; needs ffmpeg (pip install 'rotctl[video]')",
     )
-    command.add_argument(
-        "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
-    )
+    command.add_argument("--frames", type=int, help="number of frames of the filmstrip [12]")
     _add_window(command)
     command.set_defaults(command=render, interrupted="an unfinished picture is not written")
 
@@ -43,11 +41,16 @@ def render(arguments: argparse.Namespace) -> int:
 
     if arguments.filmstrip is None and arguments.video is None:
         raise InputError("nothing to draw: give --filmstrip OUT.png, --video OUT.mp4 or both")
+    if arguments.video is not None:
+        files.require_ending(arguments.video, ".mp4")
+    if arguments.frames is not None and arguments.filmstrip is None:
+        raise InputError(f"--frames={arguments.frames}: is of a filmstrip; a video has 30 a second")
     log, window = RunLog.open(log_file(arguments.log)), (arguments.start, arguments.end)
     if arguments.filmstrip is not None:
         from rotctl.report.filmstrip import filmstrip
 
-        filmstrip(log, arguments.filmstrip, arguments.frames, *window)
+        frames = 12 if arguments.frames is None else arguments.frames
+        filmstrip(log, arguments.filmstrip, frames, *window)
         print(arguments.filmstrip, flush=True)
     if arguments.video is not None:
         from rotctl.report.video import video
@@ -66,12 +69,15 @@ def add_replay(commands: Commands) -> None:
         description="Write one HTML file that works offline: the run in 3D with its contact "
         "forces, beside its plots. Nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
-        "--html", type=Path, metavar="OUT.html", help="where to write it [replay.html by the log]"
+        "--html",
+        type=path_name,
+        metavar="OUT.html",
+        help="where to write it [replay.html by the log]",
     )
     command.add_argument(
-        "--compare", type=Path, metavar="OTHER.h5", help="another run, laid over as a ghost"
+        "--compare", type=path_name, metavar="OTHER.h5", help="another run, laid over as a ghost"
     )
     command.set_defaults(command=replay, interrupted="an unfinished picture is not written")
 
@@ -97,10 +103,10 @@ def add_plot(commands: Commands) -> None:
         description="Plot rotation, momentum rates, blend, torques, contacts and solver of a run "
         "on one page, from its log alone.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--out",
-        type=Path,
+        type=path_name,
         metavar="OUT.png|.svg|.pdf",
         help="where to write it [plot.png, plan.png or prints.png by the log]",
     )
@@ -145,11 +151,11 @@ def add_export(commands: Commands) -> None:
         "(CSV, npz), as an animated scene for any viewer (binary glTF), or its model for other "
         "simulators (MJCF). Nothing is simulated again.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument(
         "--to", required=True, choices=("bvh", "csv", "npz", "gltf", "mjcf"), help="the format"
     )
-    command.add_argument("--out", type=Path, metavar="FILE", help="where to [beside the log]")
+    command.add_argument("--out", type=path_name, metavar="FILE", help="where to [beside the log]")
     command.set_defaults(command=export, interrupted="an unfinished file is not written")
 
 
@@ -176,7 +182,7 @@ def add_inspect(commands: Commands) -> None:
         description="List a log's datasets with units, its outcome and provenance, and verify "
         "its checksums.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.set_defaults(command=inspect)
 
 
@@ -202,7 +208,7 @@ def add_verify(commands: Commands) -> None:
         "it was. Writes nothing. Exit code 0: the same; 1: not; 2: no log, or none that can be "
         "run. docs/reproducibility.md says where the same bits can be expected.",
     )
-    command.add_argument("log", type=Path, metavar="RUN.h5", help=LOG_HELP)
+    command.add_argument("log", type=path_name, metavar="RUN.h5", help=LOG_HELP)
     command.add_argument("--json", action="store_true", help="print it as JSON on stdout")
     command.set_defaults(command=verify, interrupted="nothing was compared")
 

@@ -14,8 +14,8 @@ from rotctl.commands.arguments import (
     OVERRIDES_HELP,
     RUNS,
     Commands,
-    folder_name,
     log_file,
+    path_name,
     run_folder,
 )
 from rotctl.errors import InputError
@@ -37,11 +37,11 @@ def add_run(commands: Commands) -> None:
         "overrides", nargs="*", default=[], metavar="KEY=VALUE", help=OVERRIDES_HELP
     )
     command.add_argument(
-        "--out", type=folder_name, default=RUNS, help="folder for runs [%(default)s]"
+        "--out", type=path_name, default=RUNS, help="folder for runs [%(default)s]"
     )
     command.add_argument(
         "--again",
-        type=Path,
+        type=path_name,
         metavar="RUN.h5",
         help="the config of that log, instead of KEY=VALUE (rotctl verify compares, too); "
         "DIR/<run id> of a sweep that kept its row alone: the same bits again, or exit code 1",
@@ -243,7 +243,9 @@ def add_bench(commands: Commands) -> None:
     command.add_argument(
         "--repeats", type=int, default=5, help="median over this many [%(default)s]"
     )
-    command.add_argument("--plot", type=Path, metavar="OUT.svg", help="plot cost against contacts")
+    command.add_argument(
+        "--plot", type=path_name, metavar="OUT.svg", help="plot cost against contacts"
+    )
     command.set_defaults(command=bench)
 
 

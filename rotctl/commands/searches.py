@@ -4,7 +4,7 @@ import argparse
 import sys
 
 from rotctl.bars import bar
-from rotctl.commands.arguments import OVERRIDES_HELP, Commands, folder_name
+from rotctl.commands.arguments import OVERRIDES_HELP, Commands, path_name
 
 
 def add_tune(commands: Commands) -> None:
@@ -21,7 +21,7 @@ def add_tune(commands: Commands) -> None:
     )
     command.add_argument(
         "--out",
-        type=folder_name,
+        type=path_name,
         required=True,
         metavar="DIR",
         help="holds the search and its result",

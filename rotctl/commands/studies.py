@@ -8,8 +8,8 @@ from rotctl.bars import bar, bars, following
 from rotctl.commands.arguments import (
     OVERRIDES_HELP,
     Commands,
-    folder_name,
     name_and_text,
+    path_name,
     run_folder,
 )
 from rotctl.errors import InputError
@@ -30,7 +30,7 @@ def add_sweep(commands: Commands) -> None:
     )
     command.add_argument(
         "--out",
-        type=folder_name,
+        type=path_name,
         metavar="DIR",
         help="folder of runs [sweeps/NAME of an experiment]",
     )
@@ -119,7 +119,7 @@ def add_judge(commands: Commands) -> None:
         "DIR/judged.csv, beside the verdicts that were; and by metrics of your own, such as "
         "--metric 'top=max(com[:, 2])'. Logs and rows stay as they are.",
     )
-    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument("folder", type=path_name, metavar="DIR")
     command.add_argument(
         "overrides", nargs="*", default=[], metavar="KEY=VALUE", help="of criteria alone"
     )
@@ -133,7 +133,7 @@ def add_judge(commands: Commands) -> None:
         "same name in FILE.yaml",
     )
     command.add_argument(
-        "--metrics", type=Path, metavar="FILE.yaml", help="NAME: EXPRESSION, one a line"
+        "--metrics", type=path_name, metavar="FILE.yaml", help="NAME: EXPRESSION, one a line"
     )
     command.add_argument("--by", metavar="KEY,KEY", help="columns to group by, as in summarise")
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
@@ -186,7 +186,7 @@ def add_summarise(commands: Commands) -> None:
         "summary.parquet, if pyarrow is there), and print success rates with 95 % intervals and "
         "the quartiles of the metrics by group, also in groups.csv.",
     )
-    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument("folder", type=path_name, metavar="DIR")
     command.add_argument(
         "--by", metavar="KEY,KEY", help="columns to group by [the overridden keys but the seed]"
     )
@@ -221,13 +221,13 @@ def add_report(commands: Commands) -> None:
         "the worst run of each row, charts, and where it all comes from. Also claims.csv, "
         "junit.xml and summary.md. Nothing is simulated again.",
     )
-    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument("folder", type=path_name, metavar="DIR")
     command.add_argument(
-        "--out", type=folder_name, default=Path("site"), help="folder for the pages [%(default)s]"
+        "--out", type=path_name, default=Path("site"), help="folder for the pages [%(default)s]"
     )
     command.add_argument(
         "--against",
-        type=Path,
+        type=path_name,
         metavar="OLD",
         help="an earlier report: print which verdicts changed, exit 1 if one got worse",
     )
