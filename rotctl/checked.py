@@ -20,6 +20,14 @@ from rotctl.plain import NOTHING, dotted, member
 T = TypeVar("T")
 LONGEST = 60  # characters of a value that a message repeats
 
+# What settings are that may be one of several things, each of which complains by itself.
+_EITHER = {
+    "bool_type": "true or false",
+    "int_type": "a whole number",
+    "float_type": "a number",
+    "string_type": "a text",
+    "tuple_type": "a range, [low, high]",
+}
 _WORDS = {
     "tuple_type": "must be a list, in brackets",
     "list_type": "must be a list, in brackets",
@@ -109,6 +117,7 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
     # A key that is not known says more than the one that is missing for it.
     beside = [e for e in errors if e["loc"][:-1] == place_of]
     first = next((e for e in beside if e["type"] == "unexpected_keyword_argument"), errors[0])
+    first, either = _of_a_union(data, first, errors)
     kind, way, limits = first["type"], first["loc"], first.get("ctx", {})
     # Of the way, what is there in the data: pydantic adds the types of a union.
     place: list[int | str] = []
@@ -137,7 +146,7 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
     if kind in ("missing", "union_tag_not_found"):
         absent = way[-1] if kind == "missing" else limits["discriminator"].strip("'")
         return f"{dotted([*place, absent])}: {_WORDS[kind]}"
-    message = _WORDS.get(kind, "").format(**limits) or first["msg"]
+    message = either or _WORDS.get(kind, "").format(**limits) or first["msg"]
     message = message.removeprefix("Value error, ")
     message = re.sub(r"^Input should be", "must be", message)
     if kind == "value_error" and where and _begins_with_key(message, found):
@@ -147,6 +156,27 @@ def _complaint(shape: type, data: Any, errors: list[Any]) -> str:
     shown = plain or (kind != "value_error" and len(str(found)) < LONGEST)
     place_and_value = f"{where}={brief(found)}" if shown else where
     return f"{place_and_value}: {message[:1].lower()}{message[1:]}" if where else message
+
+
+def _of_a_union(data: Any, first: Any, errors: list[Any]) -> tuple[Any, str]:
+    """Of what the members of a union say the one that is about such a value, or what they all want.
+
+    A list is no number, which nobody takes it for: what is wrong with it says who takes lists.
+    """
+    if first["type"] not in _EITHER:
+        return first, ""
+    *shared, last = first["loc"]
+    found = data
+    for part in shared:
+        found = found if (inner := member(found, part)) is NOTHING else inner
+    if member(found, last) is not NOTHING:
+        return first, ""
+    said = [error for error in errors if list(error["loc"][: len(shared)]) == shared]
+    inside = [e for e in said if e["type"] not in _EITHER or len(e["loc"]) > len(first["loc"])]
+    if isinstance(found, list | tuple) and inside:
+        return inside[0], ""
+    *some, other = [_EITHER[error["type"]] for error in said if error not in inside]
+    return first, f"must be {', '.join(some)} or {other}" if some else ""
 
 
 def _begins_with_key(message: str, found: Any) -> bool:

@@ -144,7 +144,8 @@ def _require_judged(
                 f"criteria.parts: {rules} of them, and behaviour={behaviour.name} has {links} parts"
             )
         for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
-            _require_judged(part.behaviour, own, model, f"{key}.parts.{number}")
+            place = f"{part.place(number)}: criteria" if part.said else f"{key}.parts.{number}"
+            _require_judged(part.behaviour, own, model, place)
     if isinstance(criteria, DiveCriteria):
         _require_watched(behaviour, criteria, key)
     of = next((f".{part}" for part in ("landing", "stand") if hasattr(criteria, part)), "")

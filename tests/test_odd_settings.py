@@ -76,6 +76,20 @@ def complaint(chosen, changes):
         (["behaviour=back_flip"], {"behaviour.stages.3.lead": 0.5},
          "behaviour.stages.3: lead=0.5: the stage 'launch' has no poses that vary over the phase"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
+        (["behaviour=chain", 'behaviour.parts=[stand,"stand_step criteria=rolling"]'], {},
+         "behaviour.parts: 'stand_step criteria=rolling': criteria=rolling does not judge "
+         "behaviour=stand_step, a behaviour of kind staged; choose criteria of kind standing, "
+         "landing, getting_up, flip, dive, acrobatic, one_foot or orientation, such as "
+         "criteria=cartwheel"),
+        (PUSHED, {"disturbance.time": [5.0, 2.0]},
+         "disturbance.time: the range [5, 2] is empty: low must not exceed high"),
+        (PUSHED, {"disturbance.time": [1.0, 2.0, 3.0]},
+         "disturbance.time=[1.0, 2.0, 3.0]: too many values, at most 2"),
+        (PUSHED, {"disturbance.time": [1.0]}, "disturbance.time=[1.0]: must have 2 values"),
+        (PUSHED, {"disturbance.direction": ["left", 2.0]},
+         'disturbance.direction.0="left": must be a valid number'),
+        (PUSHED, {"disturbance.direction": "left"},
+         'disturbance.direction="left": must be a number or a range, [low, high]'),
         (["behaviour=forward_roll"], {"behaviour.pace.easing": 0.3},
          "behaviour.pace.easing=0.3: acts on nothing, as nothing tells it to halt, which is a 0 in "
          "pace.schedule; leave it at 0.5"),
