@@ -180,9 +180,9 @@ def test_one_that_faces_elsewhere_is_turned(tmp_path):
 
 def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "conf" / "character").mkdir(parents=True)
+    (tmp_path / "conf").mkdir()
     (tmp_path / "conf" / "rotctl.yaml").write_text("")
-    out = "conf/character/mine.yaml"
+    out = "conf/character/mine.yaml"  # whose folder is made
     assert main(["inspect-model", str(robot), "--out", out]) == 0
     said = capsys.readouterr().out
     assert "  left_knee        left_shin\n" in said

@@ -62,6 +62,11 @@ def test_words_that_can_follow(line, wanted, capsys):
     assert found == wanted if wanted is not None else len(found) == len(COMMANDS)
 
 
+def test_a_script_completes_no_line(capsys):
+    assert main(["completion", "fish", "rotctl ru"]) == 2
+    assert capsys.readouterr().err == 'rotctl: "rotctl ru": a line is for completion words\n'
+
+
 def test_every_command_and_every_choice_can_follow(capsys):
     assert len(words("rotctl ", capsys)) == len(words("", capsys)) == len(COMMANDS)
     found = words("rotctl sweep +experiment=", capsys)

@@ -479,6 +479,16 @@ class Spy:
         return (open, ("spied", "w"))
 
 
+@pytest.mark.parametrize("option", ["skeleton", "model", "up"])
+def test_what_is_of_another_kind_of_file_is_refused(tmp_path, capsys, option):
+    kind = {"skeleton": "bvh", "model": "bvh", "up": "csv"}[option]
+    of = {"skeleton": ".amc; others have their own", "model": ".npz and .csv", "up": ".bvh; other"}
+    value = "x" if option == "up" else "nowhere"
+    words = ["import-motion", f"a.{kind}", f"--{option}", value, "--out", str(tmp_path / "a.yaml")]
+    assert main(words) == 2
+    assert capsys.readouterr().err.startswith(f"rotctl: --{option}={value}: is for {of[option]}")
+
+
 def test_objects_are_never_loaded(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     np.savez("a.npz", poses=np.array([Spy()], dtype=object), trans=np.zeros((1, 3)), fps=30)

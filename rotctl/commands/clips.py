@@ -162,7 +162,8 @@ def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     files.require_ending(out, ".yaml")
     if out.exists() and out.samefile(arguments.file):
         raise InputError(f"--out={out}: is the file that is read; give the clip another name")
-    files.replace(out, text(clip).encode())
+    with files.folder(out.parent, linked=True):  # conf/motion, before there is any
+        files.replace(out, text(clip).encode())
     return out
 
 

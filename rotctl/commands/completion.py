@@ -3,7 +3,9 @@
 import argparse
 import shlex
 
+from rotctl.checked import brief
 from rotctl.commands.arguments import Commands
+from rotctl.errors import InputError
 
 # Each asks for the words of the line so far. What ends in `=` or `.` goes on, so that no blank
 # follows it; where there is nothing the shell completes files.
@@ -64,6 +66,8 @@ def add_completion(commands: Commands) -> None:
 def completion(arguments: argparse.Namespace) -> int:
     """Print a script, or the words that can follow a line."""
     if arguments.shell in SCRIPTS:
+        if arguments.line:
+            raise InputError(f"{brief(arguments.line)}: a line is for completion words")
         print(SCRIPTS[arguments.shell], end="")
         return 0
     from rotctl.completing import candidates

@@ -115,7 +115,8 @@ def inspect_model(arguments: argparse.Namespace) -> int:
     if out is not None:
         head = f"# {arguments.file.name} as rotctl inspect-model takes it.\n"
         text = yaml.safe_dump(found.character, sort_keys=False, default_flow_style=None, width=100)
-        files.replace(out, files.encoded(head + text))
+        with files.folder(out.parent, linked=True):  # conf/character, before there is any
+            files.replace(out, files.encoded(head + text))
         print(f"character  {out}")
     return 0
 

@@ -55,6 +55,8 @@ def read_capture(path: Path, wishes: Wishes = NOTHING) -> Capture:
         raise InputError(f"--rate={rate:g}: valid: 1 to 10000 Hz")
     if wishes.up and ending != ".bvh":
         raise InputError(f"--up={wishes.up}: is for .bvh; other files leave no doubt")
+    if wishes.skeleton and ending != ".amc":
+        raise InputError(f"--skeleton={wishes.skeleton}: is for .amc; others have their own")
     if wishes.model and ending not in (".npz", ".csv"):
         raise InputError(f"--model={wishes.model}: is for .npz and .csv")
     if ending == ".bvh":
