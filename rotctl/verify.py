@@ -40,7 +40,8 @@ class Repetition:
         parted: the first row that is not the same, or missing on one side; None if there is none.
         time: of that row [s].
         first: the datasets that differ there, in the order of the schema.
-        whole: what else differs: datasets without rows, and keys of the summary row.
+        whole: what else differs: datasets without rows, the seed beside the config, and keys of the
+            summary row.
         physics: the first row that the log's torques no longer lead to, `steps` if they lead to
             all; None where it was not asked, as nothing parted or the models differ.
         differs: what of code, versions and machine is not the same, or not known to be, as
@@ -88,6 +89,8 @@ def repeat(log: RunLog, progress: Callable[[], object] = lambda: None) -> Repeti
     here = {**buffer.arrays(), MODEL_PATH: np.array(scenario.model.mjcf.encode())}
     parted, first = _parted(log, here)
     whole = [name for name in SCHEMA if not _has_rows(name) and not _same(log[name], here[name])]
+    if log.attributes["seed"] != config.seed:  # which stands beside the config, for people
+        whole.append("seed")
     asked = parted is not None and MODEL_PATH not in whole
     if parted is None:
         summary = summarise(scenario, here, breakdown, wall=1.0)

@@ -187,6 +187,12 @@ def test_a_time_in_the_outcome_may_be_any(log, tmp_path):
     assert repeat(changed(log, tmp_path, outcome=outcome)).same
 
 
+def test_a_seed_that_is_not_the_one_of_the_config(log, tmp_path, capsys):
+    code, stdout = said(capsys, changed(log, tmp_path, seed=5).path)
+    assert code == 1
+    assert stdout.splitlines()[0].endswith("then other: seed")
+
+
 def test_another_model(log, tmp_path, capsys):
     other = changed(log, tmp_path, model_xml=log.model_xml.replace("9.94", "9.95"))
     assert said(capsys, other.path)[1].splitlines()[0] == (
