@@ -20,7 +20,11 @@ def require_own(assigned: Iterable[tuple[str, Any]], chosen: Callable[[], Any]) 
     Raises:
         InputError: one is; one line that names it and what was probably meant.
     """
-    every = [(key.lstrip("+"), value) for key, value in assigned]
+    every = [
+        (plain.dotted((key.lstrip("+"), *inner)), each)
+        for key, value in assigned
+        for inner, each in plain.leaves(value)
+    ]
     for key, value in every:
         group, _, rest = key.partition(".")
         taken = rest == NAME and value in choices(group) and (group, value) not in every

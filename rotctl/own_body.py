@@ -17,7 +17,7 @@ from rotctl import plain
 from rotctl.checked import checked, unknown_key
 from rotctl.choosing import simple
 from rotctl.errors import InputError
-from rotctl.listing import choices, content, is_own, named_file
+from rotctl.listing import choices, content, is_own, named_file, shipped_files
 from rotctl.settings import STRICT
 
 GROUP = "character"
@@ -116,6 +116,11 @@ def converted(model: Named) -> dict[str, Any]:
             valid = [*OwnBody.__dataclass_fields__, *data]
             raise InputError(unknown_key(plain.dotted(parts), GROUP, valid))
         data = plain.put(data, parts, value)
+    if data["name"] in list(shipped_files(GROUP)):
+        raise InputError(
+            f"{GROUP}.name={data['name']}: is a character that comes with rotctl; give "
+            f"{path.name} a name of its own, as in {{kind: mjcf, file: {body.file}, name: mine}}"
+        )
     return data
 
 

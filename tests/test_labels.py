@@ -19,6 +19,11 @@ IS_ANOTHER = "would only call it so, and that is another"
             "write behaviour=back_flip, or a name of your own",
         ),
         (
+            ["behaviour={name: back_flip, speed: 1.0}"],
+            f"behaviour.name=back_flip: {IS_ANOTHER} behaviour; "
+            "write behaviour=back_flip, or a name of your own",
+        ),
+        (
             ["seed=1", "++start.name='standing'"],
             f"start.name=standing: {IS_ANOTHER} start; write start=standing, or a name of your own",
         ),

@@ -46,6 +46,13 @@ def test_a_log_is_all_that_is_needed(here):
     assert main(["verify", str(log)]) == 0
 
 
+def test_it_is_not_called_as_one_that_comes_with_rotctl(here):
+    (here / "robot.xml").rename(here / "adult.xml")
+    message = "character.name=adult: is a character that comes with rotctl; give adult.xml a name"
+    assert complaint("character={kind: mjcf, file: adult.xml}").startswith(message)
+    assert load(["character={kind: mjcf, file: adult.xml, name: mine}"]).character.name == "mine"
+
+
 def test_it_is_the_character_that_inspect_model_writes(here):
     assert main(["inspect-model", "robot.xml", "--out", "robot.yaml"]) == 0
     written = yaml.safe_load((here / "robot.yaml").read_text())
