@@ -195,7 +195,7 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
         raise InputError(f"{error.full_key}: missing, give it as {error.full_key}=VALUE") from None
     except RecursionError:
         raise InputError(choosing.IN_A_CIRCLE) from None
-    except (HydraException, OmegaConfBaseException, ValueError) as error:
+    except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
         raise InputError(explain(error, found, _changed_by(found))) from None
     return data
 

@@ -78,6 +78,8 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
             return unknown_key(key, dotted(parts[:depth]), keys_under(place))
         place = inner
     if override.is_delete():
+        if isinstance(parts[-1], int):
+            return f"~{key}: of a list none can be left out; give the list without it"
         return f"~{key}: nothing is there to leave out" if place is None else ""
     value = override.value()
     if override.is_add():
@@ -88,6 +90,8 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
         check(put(valid, parts, value))
     except InputError as error:
         return str(error)
+    if not isinstance(value, dict):
+        return ""
     return f"{key}={brief(value)}: has keys that are not there yet; write +{key}=VALUE"
 
 

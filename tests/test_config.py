@@ -336,6 +336,19 @@ def test_a_long_value_is_not_repeated():
     )
 
 
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("~behaviour.pace", "~behaviour.pace: nothing is there to leave out"),
+        ("seed@x=1", "unknown key 'seed@x'; did you mean seed? valid keys: "),
+        ("~catch", "catch is no part of a config, and here it has added nothing to remove"),
+        ("~physics.gravity.0", "~physics.gravity.0: of a list none can be left out; give the "),
+    ],
+)
+def test_what_is_told_is_the_override_that_is_wrong(override, message):
+    assert complaint("duration=5.0", override, "seed=3").startswith(message)
+
+
 def test_the_last_of_equal_overrides_wins():
     assert load(["seed=1", "seed=2"]).seed == 2
 
