@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl import checkpoint
+from rotctl.cli import main
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -60,6 +61,14 @@ def test_it_counts_as_no_run_and_goes_when_the_run_is_done(tmp_path):
     assert not made.already_there
     assert made.folder == path.parent
     assert not path.exists()
+
+
+def test_who_names_its_folder_is_told_where_it_is(tmp_path, capsys):
+    (path,) = interrupted(tmp_path, "duration=3")
+    assert main(["inspect", str(path.parent)]) == 2
+    said = f"{path.parent}: was interrupted and is no run; its beginning is {path}"
+    assert capsys.readouterr().err == f"rotctl: {said}\n"
+    assert main(["inspect", str(path)]) == 0
 
 
 def test_a_short_run_leaves_nothing(tmp_path):

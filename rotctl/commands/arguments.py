@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 from rotctl.errors import InputError
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
+INTERRUPTED_NAME = "interrupted.h5"  # rotctl.run_folder's
 IS_ID = re.compile("[0-9a-f]{12}")
 RUNS = Path("runs")  # where runs go unless somebody says otherwise
 
@@ -50,6 +51,10 @@ def log_file(path: Path) -> Path:
             )
         return path
     if not os.path.lexists(path / LOG_NAME):
+        if os.path.lexists(path / INTERRUPTED_NAME):
+            raise InputError(
+                f"{path}: was interrupted and is no run; its beginning is {path / INTERRUPTED_NAME}"
+            )
         raise InputError(
             f"{path}: is a folder without {LOG_NAME}; name a run, its folder or the log in it; "
             f"rotctl ls {path} lists them"

@@ -137,7 +137,7 @@ def add_judge(commands: Commands) -> None:
     )
     command.add_argument("--by", metavar="KEY,KEY", help="columns to group by, as in summarise")
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
-    command.set_defaults(command=judge)
+    command.set_defaults(command=judge, interrupted="nothing was judged")
 
 
 def judge(arguments: argparse.Namespace) -> int:
@@ -193,7 +193,7 @@ def add_summarise(commands: Commands) -> None:
     command.add_argument(
         "--mixed", action="store_true", help="average over runs of different code all the same"
     )
-    command.set_defaults(command=summarise)
+    command.set_defaults(command=summarise, interrupted="no table is written")
 
 
 def summarise(arguments: argparse.Namespace) -> int:
