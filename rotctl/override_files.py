@@ -101,8 +101,9 @@ def _below(
     for name, value in data.items():
         here = (*way, name)
         key = ".".join(map(str, here))
-        if key == MODEL and isinstance(value, dict) and isinstance(value.get("file"), str):
-            yield here, _model(value, folder)
+        if key == MODEL and isinstance(value, dict) and ("file" in value or "kind" in value):
+            named = isinstance(value.get("file"), str)  # else whoever composes it tells so
+            yield here, _model(value, folder) if named else f"{MODEL}={_text(value)}"
         elif isinstance(value, dict) and value:
             yield from _below(here, value, folder)
         elif value is None and key.startswith("~"):

@@ -83,6 +83,19 @@ def test_hydra_reads_a_value_as_it_was(value):
 
 
 @pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("character: {kind: mjcf}", "character: file: missing, it cannot be left out"),
+        ("character: {kind: mjcf, file: 3}", "character: file=3: must be a valid string"),
+    ],
+)
+def test_a_model_without_a_file_is_told_as_one(here, content, said):
+    with pytest.raises(InputError) as error:
+        api.load([written(here, content)])
+    assert str(error.value).endswith(said)
+
+
+@pytest.mark.parametrize(
     "content",
     [
         "character: {kind: mjcf, file: robot.xml, strength: 2.0}",
