@@ -21,7 +21,7 @@ from rotctl.results.groups import grouped, markdown
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
-from rotctl.results.table import Table, table, tabulated
+from rotctl.results.table import Table, differing, table, tabulated
 from rotctl.run import make, run
 
 ARGUMENTS = [
@@ -165,6 +165,31 @@ def test_one_key_stands_in_the_table_and_what_is_the_same_below_it():
     assert found.metrics == ["top"]
     assert markdown(found).splitlines()[0] == "| behaviour | n | success [95 %]  |"
     assert markdown(found).endswith("The same in all runs: plant varied, top 1.")
+
+
+def test_long_values_that_begin_alike_are_not_told_to_be_the_same():
+    rows = [
+        {"run_id": f"{i}", "status": DONE, "behaviour": "a", "key": 90 * "x" + end, "success": True}
+        for i, end in enumerate("ab")
+    ]
+    columns = {"code": "", "log": "", "trajectory": ""}
+    frame = pd.DataFrame([row | columns for row in rows])
+    text = markdown(grouped(Table(frame, ["behaviour", "key"], [], [])))
+    assert text.splitlines()[0].split()[:5] == ["|", "behaviour", "|", "key", "|"]
+    assert "The same" not in text
+
+
+def test_criteria_that_the_parts_of_a_chain_bring_along_are_no_column_of_their_own():
+    def config(name, rest):
+        return {
+            "behaviour": {"name": "chain", "parts": [{"behaviour": {"name": name}}]},
+            "criteria": {"name": "chain", "parts": [{"name": name, "rest": rest}]},
+        }
+
+    assert differing([config("a", 1), config("b", 2)]) == ["behaviour.parts"]
+    assert differing([config("a", 1), config("a", 2)]) == ["criteria.parts"]
+    three = [config("a", 1), config("a", 2), config("b", 2)]
+    assert differing(three) == ["behaviour.parts", "criteria.parts"]
 
 
 def test_runs_that_are_the_same_to_the_bit_are_told_and_count_once():

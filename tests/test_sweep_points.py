@@ -89,6 +89,13 @@ def test_each_config_is_the_one_that_hydra_composes(grid):
         assert point.config == load(list(point.overrides))
 
 
+def test_what_is_added_has_its_value_where_the_config_has_it():
+    grid = ["behaviour=forward_roll", "+finish=stand,seat", "+course=circle"]
+    found = [point.values for point in points([grid])]
+    assert [values["behaviour.finish"] for values in found] == ["stand", "squat, stand"]
+    assert {values["behaviour.course"] for values in found} == {"circle"}
+
+
 def test_the_values_are_those_of_the_config():
     (point,) = points([["behaviour=forward_roll_1", "duration=2", "start.speed_x=[0,1]"]])
     assert point.values == {

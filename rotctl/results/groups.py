@@ -182,7 +182,11 @@ def markdown(groups: Groups) -> str:
     constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
     varying = [metric for metric in metrics if metric not in constant]
     named = {key: [_text(row[key], "g") for row in rows] for key in groups.keys}
-    alike = {key: named[key][0] for key in groups.keys[1:] if len(set(named[key])) == 1}
+    alike = {  # of a long value the text is its beginning
+        key: named[key][0]
+        for key in groups.keys[1:]
+        if all(_text(row[key], "g", None) == _text(rows[0][key], "g", None) for row in rows)
+    }
     keys = [key for key in groups.keys if key not in alike]
     counts = {"n": "n"} | ({"distinct": "distinct"} if repeated else {})
     counts |= {"no_result": "no result"} if missing else {}
@@ -224,11 +228,12 @@ def _spread(row: Mapping[str, Any], metric: str) -> str:
     return middle if low == middle == high else f"{middle} [{low}, {high}]"
 
 
-def _text(value: Any, form: str) -> str:
+def _text(value: Any, form: str, longest: int | None = LONGEST) -> str:
     if value is None or value != value:
         return "-"
     text = format(value, form) if isinstance(value, float) else str(value)
-    text = text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
+    if longest is not None and len(text) > longest:
+        text = f"{text[: longest - 3]}..."
     return text.replace("|", "\\|").replace("\n", " ")
 
 

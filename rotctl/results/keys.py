@@ -10,7 +10,7 @@ def name_of(value: Any) -> str | None:
     if not isinstance(value, dict):
         return None
     stages = value.get("stages")
-    if "name" not in value and isinstance(stages, list) and stages:
+    if "name" not in value and isinstance(stages, list | tuple) and stages:
         names = [find(stage, ("name",)) for stage in stages]
         return None if NOTHING in names else ", ".join(map(str, names))
     return str(value["name"]) if "name" in value else None

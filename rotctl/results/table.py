@@ -12,6 +12,7 @@ from rotctl.results.keys import name_of, value_at
 from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
+_PARTS, _CRITERIA = "behaviour.parts", "criteria.parts"  # of a chain
 # What no metric is called: other columns, and what `rotctl.results.groups` and the report add.
 TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
@@ -142,7 +143,15 @@ def differing(configs: Iterable[Mapping[str, Any]]) -> list[str]:
         keys += [part] if len(choices) > 1 else []
         for same in choices.values():
             keys += _leaves_that_differ(part, same)
-    return list(dict.fromkeys(keys))
+    brought = _brought(distinct) if _CRITERIA in keys else ()
+    return [key for key in dict.fromkeys(keys) if key not in brought]
+
+
+def _brought(configs: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+    """The criteria of a chain's parts, where they are no other than what the parts bring along."""
+    each = {(id(c.get("behaviour")), id(c.get("criteria"))): c for c in configs}.values()
+    pairs = {tuple(str(value_at(c, key)) for key in (_PARTS, _CRITERIA)) for c in each}
+    return (_CRITERIA,) if len(pairs) == len({parts for parts, _ in pairs}) else ()
 
 
 def _leaves_that_differ(key: str, values: list[Any]) -> list[str]:

@@ -13,6 +13,7 @@ from typing import Any
 
 from rotctl import labels, plain
 from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.choosing import package
 from rotctl.config import load
 from rotctl.errors import InputError
 from rotctl.listing import choices
@@ -64,10 +65,15 @@ def points(matrix: Sequence[Sequence[str]]) -> Iterator[Point]:
     bases: Bases = {}
     parts: Parts = {}
     for grid in grids:
+        keys = tuple(_told(each[0].key) for each in grid)
         for assignments in product(*grid):
             texts = tuple(one.text for one in assignments)
-            keys = tuple(one.key for one in assignments)
             yield Point(texts, keys, _config(assignments, bases, parts))
+
+
+def _told(key: str) -> str:
+    """Where a config has what is set: `+finish=stand` is `behaviour.finish` there."""
+    return package(key) if choices(key) else key
 
 
 def count(matrix: Sequence[Sequence[str]]) -> int:
