@@ -64,7 +64,8 @@ def test_words_that_can_follow(line, wanted, capsys):
 
 def test_a_script_completes_no_line(capsys):
     assert main(["completion", "fish", "rotctl ru"]) == 2
-    assert capsys.readouterr().err == 'rotctl: "rotctl ru": a line is for completion words\n'
+    said = "rotctl: LINE is for rotctl completion words, not for fish\n"
+    assert capsys.readouterr().err == said
 
 
 def test_every_command_and_every_choice_can_follow(capsys):

@@ -3,7 +3,6 @@
 import argparse
 import shlex
 
-from rotctl.checked import brief
 from rotctl.commands.arguments import Commands
 from rotctl.errors import InputError
 
@@ -67,7 +66,7 @@ def completion(arguments: argparse.Namespace) -> int:
     """Print a script, or the words that can follow a line."""
     if arguments.shell in SCRIPTS:
         if arguments.line:
-            raise InputError(f"{brief(arguments.line)}: a line is for completion words")
+            raise InputError(f"LINE is for rotctl completion words, not for {arguments.shell}")
         print(SCRIPTS[arguments.shell], end="")
         return 0
     from rotctl.completing import candidates

@@ -13,6 +13,7 @@ from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stor
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
 _PARTS, _CRITERIA = "behaviour.parts", "criteria.parts"  # of a chain
+MOST_SWEEPS = 20  # of a folder, each of other keys: a stranger's may be of as many as runs
 # What no metric is called: other columns, and what `rotctl.results.groups` and the report add.
 TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),
@@ -84,24 +85,23 @@ def _fill(rows: list[dict[str, Any]], runs: Sequence[StoredRun], columns: dict[s
 
     So a run that is not there is told beside those of its group, and makes none of its own.
     """
-    lacking = [(row, run.values) for row, run in zip(rows, runs, strict=True) if not run.config]
     known = [row for row, run in zip(rows, runs, strict=True) if run.config]
-    for told in {tuple(key for key in values if key != "seed") for _, values in lacking if values}:
-        others = [name for key, name in columns.items() if key not in (*told, "seed")]
+    lacking: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+    for row, run in zip(rows, runs, strict=True):
+        if run.values and not run.config:
+            told = tuple(columns[key] for key in run.values if key in columns and key != "seed")
+            lacking.setdefault(told, []).append(row)
+    for told in list(lacking)[:MOST_SWEEPS]:
+        others = [name for name in columns.values() if name not in (*told, columns["seed"])]
         alike: dict[tuple[Any, ...], list[set[Any]]] = {}
         for row in known:
-            said = tuple(row[columns[key]] for key in told)
-            each = alike.setdefault(said, [set() for _ in others])
+            each = alike.setdefault(tuple(row[name] for name in told), [set() for _ in others])
             for values, name in zip(each, others, strict=True):
                 values.add(row[name])
-        for row, values_told in lacking:
-            if tuple(key for key in values_told if key != "seed") == told:
-                found = alike.get(tuple(row[columns[key]] for key in told), [])
-                row |= {
-                    name: next(iter(values))
-                    for values, name in zip(found, others, strict=False)
-                    if len(values) == 1
-                }
+        for row in lacking[told]:
+            found = alike.get(tuple(row[name] for name in told), [])
+            named = zip(others, found, strict=False)  # of none there is nothing
+            row |= {name: next(iter(values)) for name, values in named if len(values) == 1}
 
 
 def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
