@@ -172,6 +172,13 @@ def test_a_taller_body_looks_further_ahead_for_what_tips_it():
     assert (found.catch.lead, found.catch.out) == (2 * settings.catch.lead, settings.catch.out)
 
 
+def test_a_taller_body_is_told_to_rise_higher():
+    settings = load(["behaviour=backward_roll_1"]).behaviour
+    found = asking(settings, Likeness(size=4.0, mass=3.0))
+    assert found.lift == tuple(4 * wave for wave in settings.lift)
+    assert (found.speed, found.angular_velocity) == (settings.speed, settings.angular_velocity)
+
+
 @pytest.mark.parametrize("known", [aloft.UNITS, falling.UNITS, UNITS])
 def test_units_are_of_fields_that_there_are(known):
     for shape, units in known.items():

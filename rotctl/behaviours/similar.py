@@ -25,6 +25,7 @@ from rotctl.behaviours.pivoting import Bring, Escapes
 from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
 from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
+from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.touching import Airborne, Launched, Touches
@@ -115,6 +116,7 @@ UNITS: Units = {
     FlightSettings: all_of(time, "opening", "change", "coasting"),
     LevellingSettings: all_of(time, "interval"),
     LandingSettings: all_of(time, "time") | all_of(length, "most"),
+    RollingSettings: all_of(length, "lift"),
     PaceSettings: all_of(length, "travel", "ahead")
     | all_of(rate, "own", "settling")
     | all_of(speed, "easing"),
