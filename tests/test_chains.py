@@ -275,12 +275,12 @@ def test_as_many_parts_as_there_may_be():
 
 
 def test_a_log_roll_begins_lying():
-    config = chain("stand", "behaviour=log_roll")
+    config = chain("stand", "behaviour=sideways_roll", more=["character=adult_free_head"])
     with pytest.raises(InputError) as caught:
         build(config)
     assert str(caught.value) == (
-        "behaviour.parts: 'log_roll': log_roll rolls about the head, lying, and cannot begin from "
-        "standing"
+        "behaviour.parts: 'sideways_roll': sideways_roll rolls about the head, lying, and cannot "
+        "begin from standing"
     )
 
 

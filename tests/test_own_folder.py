@@ -360,7 +360,7 @@ def test_a_file_that_nobody_can_choose_is_told(here, cli):
     [
         ("criteria", ["behaviour=stand", "criteria=rolling"], "such as criteria=cartwheel"),
         ("finish", ["finish.after=1"], "unknown key 'finish.after'; what +finish=CHOICE adds is "),
-        ("start", ["behaviour=log_roll", "start=falling"], "; valid: "),
+        ("start", ["behaviour=sideways_roll", "start=falling"], "; valid: "),
     ],
 )
 @pytest.mark.parametrize("text", ["kind: [", "defaults: [nobody]\n"])
