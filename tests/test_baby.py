@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rotctl.behaviours.posing import OverPhase
+from rotctl.behaviours.posing import Beyond, OverPhase
 from rotctl.config import load
 from rotctl.run import in_memory
 from rotctl.scenario import build
@@ -25,7 +25,7 @@ def turns(*overrides):
     return (np.array([summary[name] for summary in found]) for name in names)
 
 
-@pytest.mark.parametrize("target", [180, -180, 90, -120, 105])
+@pytest.mark.parametrize("target", [180, -180, 90, -120, 105, 150])
 def test_a_baby_turns_as_far_as_it_is_told_and_stays(target):
     _, turned, success = turns("behaviour=baby_roll_over", f"behaviour.target_excursion={target}")
     assert success.sum() >= MOST
@@ -39,15 +39,37 @@ class Phases:
         return np.full((2, 1), phase)
 
 
+def missing_of(missing):
+    return SimpleNamespace(target=1.0, turned=1.0 - missing, excursion=SimpleNamespace(phase=2.0))
+
+
 @pytest.mark.parametrize(
     ("missing", "ahead"), [(0.0, 0.0), (0.1, 0.25), (-0.1, -0.25), (0.5, 0.6), (-0.5, -0.6)]
 )
 def test_a_pose_goes_on_beyond_a_target_by_what_is_missing(missing, ahead):
-    law = OverPhase(Phases(), lead=0.6, beyond=1.5)
-    scene = SimpleNamespace(target=1.0, turned=1.0 - missing, excursion=SimpleNamespace(phase=2.0))
-    poses, speeds = law.poses(scene, None)
+    law = OverPhase(Phases(), lead=0.6, beyond=Beyond(gain=1.5, time=2.0))
+    poses, speeds = law.poses(missing_of(missing), None)
     assert poses == pytest.approx(2.0 + ahead)
     assert not speeds.any()
+
+
+def test_and_goes_on_for_as_long_as_it_is_missing():
+    """By as much again in that time, and no further than it may be ahead, from where it returns."""
+    law = OverPhase(Phases(), lead=0.6, beyond=Beyond(gain=1.5, time=2.0))
+    further = [None]
+    for missing in [0.1] * 400 + [0.4] * 400 + [-0.4] * 60:
+        further.append(law.advance(further[-1], missing_of(missing), 0.005))
+    assert further[400] == pytest.approx(1.5 * 0.1)
+    assert law.poses(missing_of(0.1), further[400])[0] == pytest.approx(2.0 + 0.25 + 0.15)
+    assert further[800] == pytest.approx(0.6)
+    assert further[860] == pytest.approx(0.6 - 0.4 * 1.5 * 0.15)
+    assert law.poses(missing_of(0.0), further[860])[0] == pytest.approx(2.0 + further[860])
+
+
+def test_without_it_a_pose_stops_at_the_target():
+    law = OverPhase(Phases(), lead=0.6)
+    assert law.advance(None, missing_of(0.1), 0.005) is None
+    assert law.poses(missing_of(0.1), None)[0] == pytest.approx(2.1)
 
 
 def test_a_weak_one_tries_and_does_not_make_it():

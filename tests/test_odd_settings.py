@@ -65,12 +65,12 @@ def complaint(chosen, changes):
         (STAND, {"behaviour.tasks.balance.aim.bodies": ["tail"]},
          f"behaviour.tasks.balance.aim.bodies names the unknown body 'tail'; bodies: {BODIES}"),
         (["behaviour=baby_roll_over"], {"behaviour.stages.2.lead": 0.0},
-         "behaviour.stages.2: beyond=1: the stage 'lie' must have poses and a lead, which is how "
-         "far ahead they go"),
+         "behaviour.stages.2.beyond: the stage 'lie' must have poses and a lead, which is how far "
+         "ahead they go"),
         (["behaviour=handstand"],
-         {"behaviour.stages.1.beyond": 0.5, "behaviour.stages.1.lead": 0.1},
-         "behaviour.stages.1: beyond=0.5: the stage 'bow' must have poses and a lead, which is "
-         "how far ahead they go"),
+         {"behaviour.stages.1.beyond": {"gain": 0.5, "time": 1.0}, "behaviour.stages.1.lead": 0.1},
+         "behaviour.stages.1.beyond: the stage 'bow' must have poses and a lead, which is how far "
+         "ahead they go"),
         (STAND, {"behaviour.stages.0.lead": 1.0},
          "behaviour.stages.0: lead=1: the stage 'stand' has no poses that vary over the phase"),
         (["behaviour=back_flip"], {"behaviour.stages.3.lead": 0.5},

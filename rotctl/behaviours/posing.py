@@ -3,28 +3,29 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import copysign, radians
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.easing import smooth
-from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.scene import Scene
 from rotctl.mechanics.model import Model
 from rotctl.motion import PosePair, Turn, make_pose
 from rotctl.rotations import Array, dot
 from rotctl.settings import STRICT, Finite, Positive, Range
 
+Memory = TypeVar("Memory")
 
-class PoseLaw(Protocol):
-    """A stage's pose as a feedback law of the state."""
 
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
-        """What it remembers, one control period [s] on."""
+class PoseLaw(Protocol[Memory]):
+    """A stage's pose as a feedback law of the state, and of what it remembers of its stage."""
+
+    def advance(self, before: Memory | None, scene: Scene, period: float) -> Memory | None:
+        """What it remembers, one control period [s] on; before that it is None."""
         ...
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: Memory | None) -> tuple[Array, Array]:
         """Both poses (2, nu) to track [rad], and how fast they move (2, nu) [rad/s]."""
         ...
 
@@ -32,30 +33,55 @@ class PoseLaw(Protocol):
 class Memoryless:
     """A law that remembers nothing."""
 
-    def advance(self, before: Aloft | None, scene: Scene, period: float) -> Aloft | None:
+    def advance(self, before: None, scene: Scene, period: float) -> None:
         """Nothing."""
-        return None
+
+
+@validated(frozen=True, config=STRICT)
+class Beyond:
+    """A pose goes on beyond its target: a body that lies short of it shifts its limbs on.
+
+    Attributes:
+        gain: by what is missing, times this [-].
+        time: in which it goes on by as much again, for as long as it is missing [s].
+    """
+
+    gain: Positive
+    time: Positive
 
 
 @dataclass(frozen=True)
-class OverPhase(Memoryless):
+class OverPhase:
     """Key poses over the phase, ahead of it.
 
+    It remembers how far they have gone on beyond the target while something was missing [rad].
+
     Attributes:
-        lead: at most, and at most at the target [rad].
-        beyond: multiple of what is missing, which is added to it [-].
+        lead: at most, and without `beyond` at most at the target [rad].
+        beyond: how they go on.
     """
 
     pair: PosePair
     lead: float
-    beyond: float = 0.0
+    beyond: Beyond | None = None
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def advance(self, before: float | None, scene: Scene, period: float) -> float | None:
         """See `PoseLaw`."""
-        missing = (1.0 + self.beyond) * (scene.target - scene.turned)
-        ahead = min(max(missing, -self.lead), self.lead)
-        poses = self.pair.at(scene.excursion.phase + ahead)
+        if self.beyond is None:
+            return None
+        more = self.beyond.gain * (scene.target - scene.turned) * period / self.beyond.time
+        return self._at_most((before or 0.0) + more)
+
+    def poses(self, scene: Scene, memory: float | None) -> tuple[Array, Array]:
+        """See `PoseLaw`."""
+        missing = scene.target - scene.turned
+        if self.beyond is not None:
+            missing += self.beyond.gain * missing + (memory or 0.0)
+        poses = self.pair.at(scene.excursion.phase + self._at_most(missing))
         return poses, np.zeros_like(poses)
+
+    def _at_most(self, ahead: float) -> float:
+        return min(max(ahead, -self.lead), self.lead)
 
 
 @validated(frozen=True, config=STRICT)
@@ -102,7 +128,7 @@ class Rise(Memoryless):
     height: float
     parts: Array
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
         z, first = float(scene.state.momentum.com[2]), float(scene.begin.com[2])
         way = scene.floor + self.height - first
@@ -167,7 +193,7 @@ class OverTurn(Memoryless):
     first: float
     last: float
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
         way = self.last - self.first
         gone = (scene.turned - self.first) / way
@@ -216,7 +242,7 @@ class Glide(Memoryless):
     end: Array
     seconds: float
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
         gone = min((scene.state.time - scene.begin.time) / self.seconds, 1.0)
         share = gone**3 * (10.0 - 15.0 * gone + 6.0 * gone * gone)
@@ -254,7 +280,7 @@ class Reach(Memoryless):
     end: Array
     seconds: float
 
-    def poses(self, scene: Scene, aloft: Aloft | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: None) -> tuple[Array, Array]:
         """See `PoseLaw`."""
         gone = min((scene.state.time - scene.begin.time) / self.seconds, 1.0)
         share = smooth(gone)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ def task_names(model: Model, key: str, name: str, wanted: TaskSettings) -> list[
 
 def pose_law(
     key: str, stage: Stage, shape: str, frame: Frame, target: float, model: Model
-) -> PoseLaw:
+) -> PoseLaw[Any]:
     """What says a stage's pose.
 
     Args:

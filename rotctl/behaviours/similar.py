@@ -24,7 +24,7 @@ from rotctl.behaviours.pacing import PaceSettings
 from rotctl.behaviours.pivoting import Bring, Escapes
 from rotctl.behaviours.placing import Above, Ground, Opposite
 from rotctl.behaviours.poising import Poise, Shift
-from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings
+from rotctl.behaviours.posing import Beyond, GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.stages import TaskSettings
 from rotctl.behaviours.stepping import Stepping
@@ -104,6 +104,7 @@ UNITS: Units = {
     Place: all_of(length, "distance", "height", "ahead", "room", "short"),
     Stride: all_of(length, "distance", "lift", "height") | all_of(time, "time"),
     Beside: all_of(length, "width", "lift", "height") | all_of(time, "time"),
+    Beyond: all_of(time, "time"),
     RiseSettings: all_of(length, "height"),
     GlideSettings: all_of(time, "seconds"),
     ReachSettings: all_of(time, "seconds"),

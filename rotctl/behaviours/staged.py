@@ -6,14 +6,13 @@ forward, left and up; the phase is the excursion about left, [AlBorno2014], or a
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from rotctl.behaviours import possible, take_off
 from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
-from rotctl.behaviours.flight import Aloft
 from rotctl.behaviours.posing import OverPhase
 from rotctl.behaviours.prepared import pose_law, prepared, task_names
 from rotctl.behaviours.scene import Begin, Scene, Step
@@ -42,7 +41,7 @@ class StagedMemory(NamedTuple):
         excursion: now.
         frame: of the way.
         airborne, still: for how long [s].
-        aloft: of the present stage's flight.
+        law: of the present stage's law of poses.
         step: with a foot.
     """
 
@@ -53,7 +52,7 @@ class StagedMemory(NamedTuple):
     frame: Frame
     airborne: float = 0.0
     still: float = 0.0
-    aloft: Aloft | None = None
+    law: Any = None
     step: Step = Step()
 
 
@@ -146,13 +145,12 @@ class Staged:
         scene = scene._replace(step=memory.step)
         following = self._following(memory.stage, scene)
         if following is not None:
-            memory = memory._replace(
-                stage=following, begin=_begin(self._model, state, now), aloft=None
-            )
+            begin = _begin(self._model, state, now)
+            memory = memory._replace(stage=following, begin=begin, law=None)
             memory = self._lying(memory, state)
             scene = self._scene(memory, state)
         law = self._poses[memory.stage]
-        return memory._replace(aloft=law.advance(memory.aloft, scene, self._period))
+        return memory._replace(law=law.advance(memory.law, scene, self._period))
 
     def at_last(self, memory: StagedMemory) -> bool:
         """Whether it is in its last stage."""
@@ -191,7 +189,7 @@ class Staged:
         """What the present stage wants at this instant."""
         part, stage = self._parts[memory.stage], self._stages[memory.stage]
         scene = self._scene(memory, state)
-        poses, speeds = self._poses[memory.stage].poses(scene, memory.aloft)
+        poses, speeds = self._poses[memory.stage].poses(scene, memory.law)
         scene = scene._replace(pose=poses[0], speed=speeds[0])
         part.tasks["weight"] = part.fresh["weight"]
         part.tasks["axes"] = memory.frame.axes

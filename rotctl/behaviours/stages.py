@@ -9,7 +9,13 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.aims import SERVES, Aim
 from rotctl.behaviours.facing import Lying
 from rotctl.behaviours.flight_settings import FlightSettings
-from rotctl.behaviours.posing import GlideSettings, ReachSettings, RiseSettings, TurnSettings
+from rotctl.behaviours.posing import (
+    Beyond,
+    GlideSettings,
+    ReachSettings,
+    RiseSettings,
+    TurnSettings,
+)
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.until import Leaves, Turned, Until
 from rotctl.control.kinds import KINDS
@@ -18,7 +24,7 @@ from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles, other_side
-from rotctl.settings import STRICT, Finite, NonNegative, Vector
+from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Vector
 
 
 @validated(frozen=True, config=STRICT)
@@ -87,8 +93,7 @@ class Stage:
         pose: name of the controller's pose gains in place of its usual ones.
         contact: name of its gains of contacts, likewise.
         lead: poses are looked up so far ahead of the phase, at most at the target [rad].
-        beyond: and beyond the target by this multiple of what is missing: a body that lies short of
-            it shifts its limbs on [-]; no further ahead than `lead`.
+        beyond: how they go on beyond the target, no further ahead than `lead`; not, if None.
         held_out: bodies whose contacts control may not use;
         toes: of which it may use those in front of their middle alone, so that heels can rise.
         lying: the way, left and phase are from here on those of how the body lies as the stage
@@ -111,7 +116,7 @@ class Stage:
     pose: str = ""
     contact: str = ""
     lead: NonNegative = 0.0
-    beyond: NonNegative = 0.0
+    beyond: Beyond | None = field(default=None, metadata=SPARSE)
     held_out: tuple[str, ...] = ()
     toes: tuple[str, ...] = ()
     lying: Lying | None = None
@@ -127,8 +132,8 @@ class Stage:
             )
         if self.beyond and not (self.poses and self.lead):
             raise ValueError(
-                f"beyond={self.beyond:g}: the stage {self.name!r} must have poses and a lead, "
-                "which is how far ahead they go"
+                f"beyond: the stage {self.name!r} must have poses and a lead, which is how far "
+                "ahead they go"
             )
         if self.lead and not (self.poses and _vary(self.poses)):
             raise ValueError(
