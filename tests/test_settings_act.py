@@ -44,9 +44,9 @@ class Case:
 
 CASES = {
     "default": Case(
-        # listening also has the gains of getting up; alighting has a case of its own; from seed 0
+        # listening also has the gains of getting up; alighting and catch have cases; from seed 0
         # rounding decides whether the first solver is content with a step
-        ("controller=rolling", "behaviour.alighting=null", "seed=1"),
+        ("controller=rolling", "behaviour.alighting=null", "behaviour.catch=null", "seed=1"),
         r"(?!character\.bodies|criteria|controller\.thresholds).*",
         {
             r"controller\.merging\.angle": "of hills, where contacts are near each other",
