@@ -95,7 +95,7 @@ def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None
     told = behaviour.pace.easing
     shipped = behaviour.name in shipped_files("behaviour")
     brought = _easing(behaviour.name) if shipped else told
-    if told != brought:
+    if told not in (None, brought):
         raise InputError(
             f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
             f"which is a 0 in pace.schedule; leave it at {brief(brought)}"

@@ -54,8 +54,8 @@ def parsed(override: str) -> Override:
         ) from None
     if _has_sweep(found.value() if not found.is_delete() else None):
         raise InputError(
-            f"{shown}: range(...), interval(...) and glob(...) stand alone behind the '='; "
-            "write its values one by one, as in seed=0,1,7"
+            f"{shown}: choice(...), range(...), interval(...) and glob(...) stand alone behind "
+            "the '='; write its values one by one, as in seed=0,1,7"
         )
     if not found.key_or_group:
         raise InputError(f"{shown} has no key; write key=value, such as seed=3")
@@ -105,14 +105,14 @@ def single(override: str) -> Override:
 
 
 def without_overruled(overrides: list[str]) -> list[str]:
-    """Without those that have several values, where a later one sets the same key to one.
+    """Without those that have several values, where a later one sets the same key.
 
     So a file of overrides that is for a sweep is for a run, too.
 
     Raises:
         InputError: one of them cannot be read.
     """
-    keys = [override.partition("=")[0] for override in overrides]
+    keys = [override.partition("=")[0].lstrip("+") for override in overrides]
     return [
         override
         for number, (key, override) in enumerate(zip(keys, overrides, strict=True), 1)

@@ -108,20 +108,21 @@ def test_a_joint_that_only_one_side_has_catches_nothing(model, side):
 @pytest.mark.parametrize(
     ("behaviour", "without", "catching", "impulse", "starts"),
     [
-        ("forward_roll", "duration=6", "+catch=arm", 50, (2000, 2001)),
-        ("forward_roll_1", "~behaviour.catch", "duration=6", 75, (2010, 2011)),
+        ("forward_roll", [], ["+catch=arm"], 50, (2000, 2001)),
+        ("forward_roll_1", ["~behaviour.catch"], [], 75, (2010, 2011)),
     ],
 )
 def test_pushes_that_lay_a_squat_on_its_side_are_caught(
     behaviour, without, catching, impulse, starts
 ):
-    """Of such eight nearly all are overcome, and few without; chaos may turn some, hardly those."""
-    recovered = {without: 0, catching: 0}
-    for catch, seed, direction, phase in product(recovered, starts, (120, 240), (270, 315)):
+    """Of such eight most are overcome, and few without; chaos may turn some, hardly those."""
+    recovered = [0, 0]
+    for caught, seed, direction, phase in product((0, 1), starts, (120, 240), (270, 315)):
         config = load(
             [
                 *(f"behaviour={behaviour}", f"seed={seed}", "duration=6", "disturbance=push"),
-                *("disturbance.time=2", f"disturbance.impulse={impulse}", catch),
+                *("disturbance.time=2", f"disturbance.impulse={impulse}"),
+                *(catching if caught else without),
                 *(f"disturbance.direction={direction}", f"disturbance.phase={phase}"),
             ]
         )
@@ -129,5 +130,5 @@ def test_pushes_that_lay_a_squat_on_its_side_are_caught(
         log = in_memory(made)[0].arrays()
         commanded = config.behaviour.commanded
         judged = judge(log, config.criteria, commanded, 1 / 60, 6.0, made.model.mj)
-        recovered[catch] += judged.columns["recovered"] == 1.0
-    assert recovered[catching] > recovered[without] + 2
+        recovered[caught] += judged.columns["recovered"] == 1.0
+    assert recovered[1] > recovered[0] + 2

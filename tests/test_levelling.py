@@ -110,7 +110,7 @@ def test_a_flight_without_momentum_across_needs_no_arms():
     pose = law.tucking.pose(-0.6, law._usual)
     spawn(scenario.model, episode.data, pose, 0.2, 11.0, 2.5, np.array([0.0, 45.0, 0.0]))
     for moment in episode:
-        level = episode.memory.aloft.level if episode.memory.aloft else Levelled()
+        level = episode.memory.law.level if episode.memory.law else Levelled()
         if moment.state.time > 1.5:
             break
     assert abs(level.amount) < 0.02

@@ -47,7 +47,7 @@ def test_who_is_told_to_rise_over_its_hands_gets_higher_there():
     ("value", "message"),
     [
         ("[1,2]", "behaviour.lift: must be a mean with pairs of cosine and sine, not 2 numbers"),
-        ("[9]", "behaviour.lift.0=9: must be less than or equal to 3"),
+        ("[21]", "behaviour.lift.0=21: must be less than or equal to 20"),
     ],
 )
 def test_what_makes_no_lift(value, message):

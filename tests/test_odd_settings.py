@@ -94,8 +94,8 @@ def complaint(chosen, changes):
          "behaviour.pace.easing=0.3: acts on nothing, as nothing tells it to halt, which is a 0 in "
          "pace.schedule; leave it at 0.5"),
         (["behaviour=chain", "behaviour.parts=[stand,tip_over,forward_roll]"],
-         {"behaviour.parts.3.behaviour.pace.easing": None},
-         "behaviour.parts: 'forward_roll': behaviour.pace.easing=null: acts on nothing, as nothing "
+         {"behaviour.parts.3.behaviour.pace.easing": 0.3},
+         "behaviour.parts: 'forward_roll': behaviour.pace.easing=0.3: acts on nothing, as nothing "
          "tells it to halt, which is a 0 in pace.schedule; leave it at 0.5"),
         (["behaviour=back_flip"], {"behaviour.stages.4.tasks.air_plane.body": "tail"},
          "behaviour.stages.4.tasks.air_plane.body names the unknown body 'tail'; "

@@ -153,9 +153,9 @@ def test_the_log_roll_keeps_its_legs_and_its_arms_together():
 
 
 def test_the_log_roll_is_laid_on_the_ground():
-    """Not dropped: half its height above what it lies on is all that its centre of mass has."""
-    for seed in range(4):
-        buffer, _, _ = rolled("behaviour=sideways_roll", f"seed={seed}")
+    """Its centre of mass is as high as that of who lies there: it is not dropped."""
+    for seed in range(2000, 2004):
+        buffer, _, _ = rolled("behaviour=sideways_roll", f"seed={seed}", "duration=0.1")
         assert buffer.trajectory.com[0, 2] < 0.27
 
 

@@ -224,6 +224,11 @@ CASES = {
     "turning onto the front": Case(
         ("behaviour=press_up", "start=supine"), r"behaviour\.stages\.0\.(to|lead)"
     ),
+    "lying short of the target": Case(
+        ("behaviour=turn_over", "behaviour.target_excursion=30"),
+        r"behaviour\.stages\.1\.beyond\..*",
+        seconds=3.0,
+    ),
     "reaching": Case(("behaviour=press_up",), r"behaviour\.stages\.1\.reach\.seconds"),
     "coming to lie first": Case(
         ("behaviour=press_up", "start.speed_x=[2.0,2.0]"),

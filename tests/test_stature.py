@@ -173,6 +173,7 @@ def test_a_taller_body_looks_further_ahead_for_what_tips_it():
 
 
 def test_a_taller_body_is_told_to_rise_higher():
+    build(load(["behaviour=backward_roll_1", "character.height=10"]))
     settings = load(["behaviour=backward_roll_1"]).behaviour
     found = asking(settings, Likeness(size=4.0, mass=3.0))
     assert found.lift == tuple(4 * wave for wave in settings.lift)

@@ -13,8 +13,10 @@ from rotctl.motion import pairs_after_a_mean
 from rotctl.native.layout import constant
 from rotctl.settings import Finite
 
+MOST = 20.0  # [m/rev] six times what an adult could be told: the tallest body is 10 m
+
 Lift = Annotated[
-    tuple[Annotated[Finite, Field(ge=-3, le=3)], ...],
+    tuple[Annotated[Finite, Field(ge=-MOST, le=MOST)], ...],
     Field(min_length=1, max_length=constant("WAVES")),
     AfterValidator(pairs_after_a_mean),
 ]

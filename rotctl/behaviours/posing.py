@@ -15,17 +15,17 @@ from rotctl.motion import PosePair, Turn, make_pose
 from rotctl.rotations import Array, dot
 from rotctl.settings import STRICT, Finite, Positive, Range
 
-Memory = TypeVar("Memory")
+Remembered = TypeVar("Remembered")
 
 
-class PoseLaw(Protocol[Memory]):
+class PoseLaw(Protocol[Remembered]):
     """A stage's pose as a feedback law of the state, and of what it remembers of its stage."""
 
-    def advance(self, before: Memory | None, scene: Scene, period: float) -> Memory | None:
+    def advance(self, before: Remembered | None, scene: Scene, period: float) -> Remembered | None:
         """What it remembers, one control period [s] on; before that it is None."""
         ...
 
-    def poses(self, scene: Scene, memory: Memory | None) -> tuple[Array, Array]:
+    def poses(self, scene: Scene, memory: Remembered | None) -> tuple[Array, Array]:
         """Both poses (2, nu) to track [rad], and how fast they move (2, nu) [rad/s]."""
         ...
 

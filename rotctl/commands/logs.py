@@ -49,8 +49,8 @@ def render(arguments: argparse.Namespace) -> int:
     if arguments.filmstrip is not None:
         from rotctl.report.filmstrip import filmstrip
 
-        frames = 12 if arguments.frames is None else arguments.frames
-        filmstrip(log, arguments.filmstrip, frames, *window)
+        frames = {} if arguments.frames is None else {"frames": arguments.frames}
+        filmstrip(log, arguments.filmstrip, **frames, start=window[0], end=window[1])
         print(arguments.filmstrip, flush=True)
     if arguments.video is not None:
         from rotctl.report.video import video

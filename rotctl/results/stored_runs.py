@@ -79,7 +79,7 @@ def stored_runs(folder: Path) -> tuple[list[StoredRun], list[str]]:
         if lost:
             notes.append(f"{at}: {len(lost)} of its runs had logs that are not there, left out")
     if not runs and not missing:
-        why = f": {notes[-1]}" if notes else f"; rotctl sweep --out {folder} makes some"
+        why = f": {'; '.join(notes)}" if notes else f"; rotctl sweep --out {folder} makes some"
         raise InputError(f"{folder}: no runs in it{why}")
     known = [_with_values(run, entries) for run in runs.values()]
     return known + missing, notes + copies
@@ -90,8 +90,10 @@ def _places(
 ) -> tuple[list[tuple[str, Row | None]], dict[str, set[str]], list[str]]:
     """Where logs and manifests lie below a folder, with the rows of indices.
 
-    An index is believed of a log that nobody has touched since, and where none was kept. Also told
-    are, for each index, the runs whose logs were kept and are not there, and notes.
+    An index is believed of a log that nobody has touched since, and where none was kept.
+
+    Returns:
+        Places with rows; by index the runs whose logs were kept and are not there; and notes.
     """
     places: list[tuple[str, Row | None]] = []
     gone: dict[str, set[str]] = {}

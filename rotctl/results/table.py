@@ -12,8 +12,8 @@ from rotctl.results.keys import name_of, value_at
 from rotctl.results.stored_runs import DAMAGED, FAILED, MISSING, StoredRun, stored_runs
 
 MOST = 200  # config keys, and as many metrics: a stranger's logs may differ in everything
-_PARTS, _CRITERIA = "behaviour.parts", "criteria.parts"  # of a chain
 MOST_SWEEPS = 20  # of a folder, each of other keys: a stranger's may be of as many as runs
+_PARTS, _CRITERIA = "behaviour.parts", "criteria.parts"  # of a chain
 # What no metric is called: other columns, and what `rotctl.results.groups` and the report add.
 TAKEN = (
     *("run_id", "behaviour", "seed", "success", "failure_reason", "status", "code", "log"),

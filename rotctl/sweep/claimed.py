@@ -51,7 +51,8 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
         own = experiments.matrix([f"{experiments.PREFIX}{name}", "seed=0"])
         here = [(point.values, point.config) for point in points(own)]
         absent = [(who, where) for who, where in absent if not _any(_without_seed(where), here)]
-    for who, where in absent:
+    if absent:
+        who, where = absent[0]
         raise InputError(
             f"{experiments.PREFIX}{name}: {who}: where: no run of its grid has "
             f"{_wrong(where, here)}"

@@ -56,14 +56,14 @@ def _each(override: str, found: Override) -> list[Any]:
         wide, mixed = replace(wide, shuffle=False), True
     try:
         each = replace(found, _value=wide).sweep_iterator(Transformer.identity)
-        values = list(islice(each, MOST_POINTS + 1))
+        found_values = list(islice(each, MOST_POINTS + 1))
     except (HydraException, ValueError, ArithmeticError):
         key = found.key_or_group
         raise InputError(
             f"{override}: cannot be counted through; write {key}=range(start,stop,step) with "
             "finite numbers and a step that is not 0"
         ) from None
-    return sample(values, len(values)) if mixed else values
+    return sample(found_values, len(found_values)) if mixed else found_values
 
 
 def _read(override: str) -> Assignment:
