@@ -125,7 +125,7 @@ def test_the_values_are_those_of_the_config():
             for endless in ("range(0,3,0)", "range(0,1,0.0)", "range(nan)", "range(0,3,nan)")
         ),
         *(
-            ([f"start={mixed}"], f"override 'start={mixed}': choice(...), range(...), interval(...) and glob(")
+            ([f"start={mixed}"], f"override 'start={mixed}': choice(...), range(...), ")
             for mixed in ("range(0,3),7", "interval(0,1),2", "rest,glob(*)", "[range(0,3)]")
         ),
         (["seed=shuffle(range(0,1e12))"], "the sweep has more than 100000 points; make several"),
