@@ -341,7 +341,7 @@ def test_a_long_value_is_not_repeated():
     [
         ("~behaviour.pace", "~behaviour.pace: nothing is there to leave out"),
         ("seed@x=1", "unknown key 'seed@x'; did you mean seed? valid keys: "),
-        ("~catch", "catch is no part of a config, and here it has added nothing to remove"),
+        ("~finish", "finish is no part of a config, and here it has added nothing to remove"),
         ("~physics.gravity.0", "~physics.gravity.0: of a list none can be left out; give the "),
     ],
 )

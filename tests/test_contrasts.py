@@ -44,7 +44,8 @@ def asked(made, state, now, name):
 @pytest.mark.parametrize("about", FACING)
 def test_root_control_sees_the_pelvis_alone(about):
     made, state, now, turned = at_a_state(
-        ["excursion=root", "behaviour.alighting=null", f"behaviour.roll_about={about}"]
+        ["excursion=root", "behaviour.alighting=null", "behaviour.catch=null"]
+        + [f"behaviour.roll_about={about}"]
     )
     gains = made.config.controller.tasks["spin"]
     task = asked(made, state, now, "spin")
@@ -101,10 +102,12 @@ def test_the_commanded_velocity_on_the_decline(name, climb):
     assert velocity @ velocity == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("behaviour", ["reference_roll", "backward_roll_2"])
-def test_the_clock_looks_poses_up_by_time_whatever_the_body_does(behaviour):
-    """AE and what is asked of the momenta are those of the body all the same."""
-    overrides = [f"behaviour={behaviour}", "behaviour.angular_velocity=0.75"]
+@pytest.mark.parametrize(
+    "chosen", [["behaviour=reference_roll"], ["behaviour=backward_roll_2", "behaviour.lift=null"]]
+)
+def test_the_clock_looks_poses_up_by_time_whatever_the_body_does(chosen):
+    """AE and what is asked of the momenta, but for a lift, are those of the body all the same."""
+    overrides = [*chosen, "behaviour.angular_velocity=0.75"]
     by_phase, state, measured, _ = at_a_state(overrides)
     made, state, now, _ = at_a_state([*overrides, "excursion=clock"])
     after = made.behaviour.advance(now, state)

@@ -106,7 +106,7 @@ def test_either_physics_takes_all_of_it(world, physics, seed):
 @pytest.mark.parametrize("kind", [PUSH, ["disturbance=wind", "disturbance.speed=30"]])
 def test_newton_s_second_law_holds_in_the_log(physics, kind):
     """Ground, gravity and what is told of the outside are the change of momentum."""
-    scenario = made(f"physics={physics}", *kind, "physics.substeps=32", "duration=1")
+    scenario = made(f"physics={physics}", *kind, "physics.substeps=64", "duration=1")
     buffer, breakdown = in_memory(scenario)
     assert not breakdown
     gained = np.diff(buffer.trajectory.linear_momentum, axis=0) * scenario.config.controller.rate

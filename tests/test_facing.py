@@ -30,7 +30,9 @@ def test_orientation_at_phase_0(about):
 
 @pytest.mark.parametrize("about", FACING)
 def test_a_start_turns_about_the_rolling_axis(about):
-    made = scenario.build(load(["behaviour.alighting=null", f"behaviour.roll_about={about}"]))
+    made = scenario.build(
+        load(["behaviour.alighting=null", "behaviour.catch=null", f"behaviour.roll_about={about}"])
+    )
     data = mujoco.MjData(made.model.mj)
     for pitch in (0.0, 0.7, 2.0):
         usual = replace(made.behaviour.start(pitch), pose=np.zeros(made.model.mj.nu))
