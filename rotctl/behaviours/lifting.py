@@ -13,7 +13,7 @@ from rotctl.motion import pairs_after_a_mean
 from rotctl.native.layout import constant
 from rotctl.settings import Finite
 
-MOST = 20.0  # [m/rev] six times what an adult could be told: the tallest body is 10 m
+MOST = 20.0  # [m/rev] of the tallest body, 10 m, which rises six times as far as an adult
 
 Lift = Annotated[
     tuple[Annotated[Finite, Field(ge=-MOST, le=MOST)], ...],
