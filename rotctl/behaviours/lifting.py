@@ -7,18 +7,12 @@ turns is not held up, and who falls back is let down again.
 
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
-from rotctl.motion import pairs_after_a_mean
-from rotctl.native.layout import constant
+from rotctl.motion import FourierSeries
 from rotctl.settings import Finite
 
 MOST = 20.0  # [m/rev] of the tallest body, 10 m, which rises six times as far as an adult
 
-Lift = Annotated[
-    tuple[Annotated[Finite, Field(ge=-MOST, le=MOST)], ...],
-    Field(min_length=1, max_length=constant("WAVES")),
-    AfterValidator(pairs_after_a_mean),
-]
-"""What the centre of mass is told to rise by as it turns [m/rev]: mean, cosine and sine over the
-phase, ..."""
+Lift = FourierSeries[Annotated[Finite, Field(ge=-MOST, le=MOST)]]
+"""What the centre of mass is told to rise by as it turns [m/rev], over the phase."""

@@ -10,19 +10,14 @@ from collections.abc import Sequence
 from math import cos, radians, sin
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
-from rotctl.motion import over_phase, pairs_after_a_mean
-from rotctl.native.layout import constant
+from rotctl.motion import FourierSeries, over_phase
 from rotctl.rotations import Array
 from rotctl.settings import Finite
 
-Oblique = Annotated[
-    tuple[Annotated[Finite, Field(ge=-60, le=60)], ...],
-    Field(min_length=1, max_length=constant("WAVES")),
-    AfterValidator(pairs_after_a_mean),
-]
-"""From the left, or right, towards the head [deg]: mean, cosine and sine over the phase, ..."""
+Oblique = FourierSeries[Annotated[Finite, Field(ge=-60, le=60)]]
+"""From the left, or right, towards the head [deg], over the phase."""
 
 
 def axis(side: Array, up: Array, oblique: Sequence[float] | None, phase: float) -> Array:

@@ -3,17 +3,18 @@
 from rotctl.motion.clip import Clip, RollAbout, load_clip
 from rotctl.motion.pose_pair import (
     Angle,
+    FourierSeries,
     PosePair,
     Poses,
     Turn,
     make_pose,
     make_pose_pair,
     over_phase,
-    pairs_after_a_mean,
 )
 from rotctl.motion.reference import ReferencePair, ReferenceSettings, make_reference_pair
 
 __all__ = [
+    "FourierSeries",
     "Angle",
     "Clip",
     "PosePair",
@@ -27,5 +28,4 @@ __all__ = [
     "make_pose_pair",
     "make_reference_pair",
     "over_phase",
-    "pairs_after_a_mean",
 ]

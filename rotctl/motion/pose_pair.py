@@ -9,7 +9,7 @@ the phase is clipped to the joints' ranges, which it may well pass; a single one
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, sin
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag
@@ -26,19 +26,28 @@ ROUNDING = 1e-6  # [rad] of a limit that somebody copied
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far
 
 
-def pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
-    """Such numbers over the phase, as they are.
+def _pairs_after_a_mean(waves: tuple[float, ...]) -> tuple[float, ...]:
+    """A mean and pairs of cosine and sine, as they are.
 
     Raises:
-        ValueError: they are no mean with pairs after it.
+        ValueError: they are not.
     """
     if len(waves) % 2 == 0:
         raise ValueError(f"must be a mean with pairs of cosine and sine, not {len(waves)} numbers")
     return waves
 
 
+Number = TypeVar("Number")
+FourierSeries = Annotated[
+    tuple[Number, ...],
+    Field(min_length=1, max_length=constant("WAVES")),
+    AfterValidator(_pairs_after_a_mean),
+]
+"""Of a number over the phase: mean, cosine and sine, and those of multiples of the phase."""
+
+
 def over_phase(waves: Sequence[float], phase: float) -> float:
-    """Such numbers at a phase [rad]."""
+    """What a `FourierSeries` is at a phase [rad], in the unit of its numbers."""
     total = waves[0]
     for n in range(1, len(waves) // 2 + 1):
         total += waves[2 * n - 1] * cos(n * phase) + waves[2 * n] * sin(n * phase)
@@ -52,7 +61,7 @@ def _form(angle: object) -> str:
 Waves = Annotated[
     tuple[Turn, ...],
     Field(min_length=3, max_length=constant("WAVES")),
-    AfterValidator(pairs_after_a_mean),
+    AfterValidator(_pairs_after_a_mean),
 ]
 Angle = Annotated[
     Annotated[Turn, Tag("turn")] | Annotated[Waves, Tag("waves")], Discriminator(_form)
