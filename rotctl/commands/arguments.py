@@ -11,6 +11,7 @@ from rotctl.errors import InputError
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
 INTERRUPTED_NAME = "interrupted.h5"  # rotctl.run_folder's
 IS_ID = re.compile("[0-9a-f]{12}")
+FRAMES = 12  # of a filmstrip, two rows of six
 RUNS = Path("runs")  # where runs go unless somebody says otherwise
 
 # Where a command is added; argparse has no public name for it.

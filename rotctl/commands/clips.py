@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rotctl.bars import bar, following
 from rotctl.clip_wording import import_warnings, imported
-from rotctl.commands.arguments import Commands, path_name, role_and_name
+from rotctl.commands.arguments import FRAMES, Commands, path_name, role_and_name
 from rotctl.errors import InputError
 from rotctl.wording import printable
 
@@ -129,7 +129,7 @@ def add_preview(commands: Commands) -> None:
     command.add_argument("clip", metavar="CLIP", help="a name in conf/motion/, or a .yaml file")
     command.add_argument("--out", type=path_name, required=True, metavar="OUT.png")
     command.add_argument(
-        "--frames", type=int, default=12, help="number of frames of the filmstrip [%(default)s]"
+        "--frames", type=int, default=FRAMES, help="number of frames of the filmstrip [%(default)s]"
     )
     _add_character(command)
     command.set_defaults(command=preview_motion, interrupted="an unfinished picture is not written")

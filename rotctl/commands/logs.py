@@ -5,7 +5,7 @@ import sys
 
 from rotctl import files
 from rotctl.bars import bar, following
-from rotctl.commands.arguments import LOG_HELP, Commands, log_file, path_name, second
+from rotctl.commands.arguments import FRAMES, LOG_HELP, Commands, log_file, path_name, second
 from rotctl.errors import InputError
 from rotctl.wording import described, printable, repeated
 
@@ -30,7 +30,7 @@ def add_render(commands: Commands) -> None:
         metavar="OUT.mp4",
         help="the same view as a film, 30 frames/s; needs ffmpeg (pip install 'rotctl[video]')",
     )
-    command.add_argument("--frames", type=int, help="number of frames of the filmstrip [12]")
+    command.add_argument("--frames", type=int, help=f"number of frames of the filmstrip [{FRAMES}]")
     _add_window(command)
     command.set_defaults(command=render, interrupted="an unfinished picture is not written")
 
@@ -49,8 +49,8 @@ def render(arguments: argparse.Namespace) -> int:
     if arguments.filmstrip is not None:
         from rotctl.report.filmstrip import filmstrip
 
-        frames = {} if arguments.frames is None else {"frames": arguments.frames}
-        filmstrip(log, arguments.filmstrip, **frames, start=window[0], end=window[1])
+        frames = FRAMES if arguments.frames is None else arguments.frames
+        filmstrip(log, arguments.filmstrip, frames, *window)
         print(arguments.filmstrip, flush=True)
     if arguments.video is not None:
         from rotctl.report.video import video
