@@ -12,7 +12,8 @@ from rotctl.metrics.columns import Column
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
-PAGES = sorted([*DOCS.glob("*.md"), ROOT / "README.md", ROOT / "CHANGELOG.md"])
+SITE = sorted([*DOCS.glob("*.md"), *DOCS.glob("trials/*.md")])
+PAGES = [*SITE, ROOT / "README.md", ROOT / "CHANGELOG.md"]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```.*?^```", flags=re.MULTILINE | re.DOTALL)
 
@@ -24,7 +25,7 @@ def headings(page):
     return {heading.strip().replace(" ", "-") for heading in plain}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_links_lead_somewhere(page):
     for target in LINK.findall(FENCE.sub("", page.read_text(encoding="utf-8"))):
         path, _, heading = target.partition("#")
@@ -35,8 +36,9 @@ def test_links_lead_somewhere(page):
 
 
 def test_every_page_is_on_the_site():
-    listed = re.findall(r"^([a-z_0-9]+)$", (DOCS / "index.md").read_text(), re.MULTILINE)
-    assert sorted(listed) == sorted(page.stem for page in DOCS.glob("*.md") if page.stem != "index")
+    listed = re.findall(r"^([a-z_0-9/]+)$", (DOCS / "index.md").read_text(), re.MULTILINE)
+    named = {str(page.relative_to(DOCS).with_suffix("")) for page in SITE}
+    assert sorted(listed) == sorted(named - {"index"})
 
 
 def test_every_column_of_a_summary_is_told():
