@@ -20,13 +20,13 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rotctl import listing
-from rotctl import run as runs
-from rotctl.config import load as composed
+from rotctl.choices import listing
+from rotctl.choices.override_files import expanded
+from rotctl.config.config import load as composed
+from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog
-from rotctl.override_files import expanded
-from rotctl.schema import Config
+from rotctl.runs import run as runs
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,11 +7,11 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+from rotctl.config.schema import check
 from rotctl.log import collect
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.schema import check
-from rotctl.summary import summarise
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 
 
 def digest(config):

@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.motion import load_clip
 from rotctl.motion.cycle import at_places
 from rotctl.motion.ground import rolled
 from rotctl.motion.preview import motion_of
-from rotctl.scenario import model_of
+from rotctl.runs.scenario import model_of
 
 # Our bodies by the names that MotionBuilder gives them.
 NAMES = {

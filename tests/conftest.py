@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 from browser import Browser, executable
 
-from rotctl import config
-from rotctl.config import load
+from rotctl.config import config
+from rotctl.config.config import load
 from rotctl.control import Command, Decision
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import collect
 from rotctl.errors import InputError
 from rotctl.mechanics.state import read
 from rotctl.report import gl
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.simulation import episode
 from rotctl.simulation.episode import Episode
 

@@ -7,12 +7,12 @@ from math import atan2, degrees, pi, tau
 import mujoco
 import numpy as np
 
-from rotctl.config import composed
+from rotctl.config.config import composed
+from rotctl.config.schema import check
+from rotctl.maths.rotations import quaternion_from_rotation_vector
 from rotctl.mechanics.bodies import is_character, lowest_and_highest
 from rotctl.mechanics.shape import Shapes
-from rotctl.rotations import quaternion_from_rotation_vector
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 LEFT = np.array([0.0, 1.0, 0.0])

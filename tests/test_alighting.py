@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.alighting import Alighting, AlightingSettings
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics import state as states
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 SETTINGS = AlightingSettings(
     limbs={"foot": ("hip_x", "hip_z"), "forearm": ("shoulder_x", "shoulder_z")},

@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics import appearance
 from rotctl.metrics import skeleton as skeletons
 from rotctl.metrics.skeleton import Capsules, Skeleton, _compiled, _reference, overlap
 from rotctl.native import library
-from rotctl.scenario import model_of
+from rotctl.runs.scenario import model_of
 
 PERIOD = 1.0 / 60.0
 WEIGHT = 70.0 * 9.81

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from flights import HEAD_FIRST, flier, fly
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics import dive
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 KEY = "behaviour.target_excursion"

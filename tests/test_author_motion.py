@@ -9,8 +9,8 @@ import yaml
 from captures import adult
 from scipy.spatial.transform import Rotation
 
+from rotctl.choices.listing import conf_dir
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
 from rotctl.motion import load_clip
 from rotctl.motion.author import author, load_keys
 from rotctl.motion.clip import names

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.posing import Beyond, OverPhase
-from rotctl.config import load
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.summary import summarise
+from rotctl.config.config import load
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 
 SEEDS = range(2000, 2006)
 MOST = 4  # of six; nineteen of twenty do

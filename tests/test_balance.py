@@ -18,14 +18,14 @@ from rotctl.behaviours.footholds import capture_point, landing
 from rotctl.behaviours.scene import Step
 from rotctl.behaviours.swing_foot import chosen
 from rotctl.behaviours.swinging import arrival
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 from rotctl.simulation.start import place
-from rotctl.summary import summarise
 
 
 @pytest.fixture(scope="module")

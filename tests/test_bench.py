@@ -4,10 +4,10 @@ import mujoco
 import pytest
 
 from rotctl.bench import scaling, solvers, split, startup, whole
-from rotctl.cli import main
-from rotctl.config import load
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.cli.cli import main
+from rotctl.config.config import load
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 

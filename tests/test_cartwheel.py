@@ -13,13 +13,13 @@ from rotctl.behaviours.stages import Otherwise, mirrored
 from rotctl.behaviours.touching import Touches
 from rotctl.behaviours.until import Passed
 from rotctl.behaviours.wheeling import Carry, Place, Stride, share_of, ways
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.metrics.acrobatic import judge
 from rotctl.metrics.flip import turn
 from rotctl.metrics.touching import touch_downs
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 STILL = ["start.scatter=0", "start.tilt=0", "start.speed_x=[0,0]", "start.speed_y=[0,0]"]

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.catching import Catch, CatchSettings
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
+from rotctl.maths.rotations import advanced
 from rotctl.metrics.judge import judge
-from rotctl.rotations import advanced
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 SETTINGS = CatchSettings(out={"shoulder_x": 1.0, "elbow": -0.5}, gain=4.0, free=0.03, lead=0.1)
 

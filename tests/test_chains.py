@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 from here import swept
 
-from rotctl import listing
 from rotctl.behaviours.until import After
-from rotctl.chained import composed
-from rotctl.config import load
+from rotctl.choices import listing
+from rotctl.cli.wording import readable
+from rotctl.config.chained import composed
+from rotctl.config.config import load
+from rotctl.config.identity import run_id
+from rotctl.config.schema import check
 from rotctl.control.similar import similar_gains
 from rotctl.errors import InputError
-from rotctl.identity import run_id
 from rotctl.log import RunLog
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.chain import Link, spans
@@ -22,14 +24,12 @@ from rotctl.report.stage_names import stage_names
 from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at
 from rotctl.results.table import table
-from rotctl.run import in_memory, run
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.run import in_memory, run
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import links_of, summarise
+from rotctl.settings.written import to_dict
 from rotctl.simulation.known import StateSettings
-from rotctl.summary import links_of, summarise
 from rotctl.sweep.points import points
-from rotctl.wording import readable
-from rotctl.written import to_dict
 
 QUICK = ["behaviour=chain", "behaviour.rest.seconds=0.2", "controller=standing"]
 

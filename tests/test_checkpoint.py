@@ -5,13 +5,13 @@ import itertools
 import numpy as np
 import pytest
 
-from rotctl import checkpoint
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.results.stored_runs import stored_runs
-from rotctl.run import make, run
+from rotctl.runs import checkpoint
+from rotctl.runs.run import make, run
 
 STEPS = 90
 

@@ -8,19 +8,19 @@ import pytest
 from both import along
 from questions import Asking, any_task
 
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.config.schema import check
 from rotctl.control import Controller, compiled, literal
 from rotctl.control.compiled import CompiledStep
 from rotctl.control.kinds import KINDS, Kind, Rows
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import collect
 from rotctl.mechanics.state import read
-from rotctl.plain import put, way
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.scenario import build
+from rotctl.settings.plain import put, way
+from rotctl.settings.written import to_dict
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
-from rotctl.written import to_dict
 
 pytestmark = pytest.mark.skipif(
     compiled.library() is None,

@@ -10,11 +10,11 @@ import pytest
 from rotctl.behaviours.compiled_roll import PACE
 from rotctl.behaviours.pacing import PaceSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import compiled
 from rotctl.mechanics import pair_limit
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation import compiled_periods, loop
 
 pytestmark = [

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from rotctl.cli import main
-from rotctl.listing import choices, named_files
-from rotctl.parser import COMMANDS
+from rotctl.choices.listing import choices, named_files
+from rotctl.cli.cli import main
+from rotctl.cli.parser import COMMANDS
 
 ROLLS = [name for name in choices("behaviour") if name.startswith("forward_roll")]
 
@@ -133,7 +133,7 @@ def test_a_name_or_key_that_a_shell_would_act_on_is_left_out(name, capsys, tmp_p
 
 def test_a_key_is_no_path_of_a_command_to_zsh(capsys, tmp_path, monkeypatch):
     """Which looks up what follows a `=` that a word begins with."""
-    monkeypatch.setattr("rotctl.completing._keys", lambda *of: ["=ls=", "seed="])
+    monkeypatch.setattr("rotctl.cli.completing._keys", lambda *of: ["=ls=", "seed="])
     assert words("rotctl run ", capsys) == ["seed="]
 
 

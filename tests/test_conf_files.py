@@ -5,11 +5,11 @@ import shutil
 
 import pytest
 
-from rotctl import listing
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices import listing
+from rotctl.choices.listing import conf_dir, groups
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, groups
 
 
 @pytest.fixture
@@ -17,7 +17,7 @@ def conf(tmp_path, monkeypatch):
     """A copy of conf/ of our own."""
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "package").mkdir()
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
     return tmp_path / "conf"
 
 

@@ -9,16 +9,16 @@ from dataclasses import FrozenInstanceError, asdict
 import pytest
 import yaml
 
-from rotctl import choosing, listing
-from rotctl.choosing import simple
-from rotctl.config import _by_hydra as by_hydra
-from rotctl.config import composed, load
+from rotctl.choices import choosing, listing
+from rotctl.choices.choosing import simple
+from rotctl.choices.listing import conf_dir, groups
+from rotctl.choices.overrides import single
+from rotctl.config.config import _by_hydra as by_hydra
+from rotctl.config.config import composed, load
+from rotctl.config.schema import check
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, groups
-from rotctl.overrides import single
-from rotctl.scenario import build
-from rotctl.schema import check
-from rotctl.written import to_dict, to_yaml
+from rotctl.runs.scenario import build
+from rotctl.settings.written import to_dict, to_yaml
 
 GROUPS = (
     "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "
@@ -445,7 +445,7 @@ def test_a_composed_config_may_be_changed_and_the_next_is_as_it_was():
 def test_a_file_that_changed_is_read_again(tmp_path, monkeypatch):
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "package").mkdir()
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
     assert composed(["start=rest"])["start"]["pitch"] == [-0.3, 0.0]
     file = tmp_path / "conf" / "start" / "rest.yaml"
     file.write_text(file.read_text().replace("pitch: [-0.3, 0.0]", "pitch: [-0.2, 0.0]"))
@@ -529,7 +529,7 @@ def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text
     if file == "finish/other.yaml":  # is about another key than the one that builds on it
         stand = "# @package behaviour.finish\ndefaults: [other, _self_]\n"
         (tmp_path / "conf" / "finish" / "stand.yaml").write_text(stand)
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
     (tmp_path / "package").mkdir()
     assert choosing.composed([simple("start=rest"), simple("+finish=stand")]) is None
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl import scenario
 from rotctl.behaviours.facing import FACING
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
+from rotctl.maths.rotations import rotate
 from rotctl.mechanics.state import read
-from rotctl.rotations import rotate
-from rotctl.run import in_memory
+from rotctl.runs import scenario
+from rotctl.runs.run import in_memory
 
 
 def at_a_state(overrides):

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.course import Course, Going, PathSettings, RatesSettings
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
+from rotctl.maths.rotations import about_up, rotate
 from rotctl.mechanics import excursion
 from rotctl.metrics.columns import along_way, in_frame, turns
 from rotctl.metrics.judge import judge
-from rotctl.rotations import about_up, rotate
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 SLALOM = ((4.0, 45.0), (8.0, -90.0), (4.0, 45.0))
 PERIOD = 1.0 / 60.0

@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 from questions import look_at
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
 from rotctl.mechanics.disturbance import OnePush
 from rotctl.mechanics.momentum import contact_momentum_maps
 from rotctl.mechanics.state import read
 from rotctl.mechanics.wind import Air
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 PUSH = ["disturbance=push", "disturbance.time=[0.11, 0.11]"]  # between two control steps

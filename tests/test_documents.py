@@ -7,10 +7,10 @@ import sys
 import pytest
 import yaml
 
-from rotctl import documents
-from rotctl.documents import from_json, from_yaml, read_json_lines, read_yaml
+from rotctl.choices.listing import conf_dir, shipped
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, shipped
+from rotctl.settings import documents
+from rotctl.settings.documents import from_json, from_yaml, read_json_lines, read_yaml
 
 NO_TEXT = "a key is no text; put it in quotes"
 
@@ -106,7 +106,7 @@ def test_nor_does_one_of_the_parser_in_python():
     """It is used where C's is missing, and quotes the text in its messages."""
     script = (
         "import yaml; del yaml.CSafeLoader; import sys\n"
-        "from rotctl import documents\n"
+        "from rotctl.settings import documents\n"
         "for text in eval(sys.stdin.read()):\n"
         "    try: print(documents.from_yaml('f', text))\n"
         "    except documents.InputError as error: print(error, file=sys.stderr)"

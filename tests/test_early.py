@@ -4,9 +4,9 @@ import re
 
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics.early import of_a_part
-from rotctl.run import make
+from rotctl.runs.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")
 PUSHED = ("disturbance=push", "disturbance.impulse=80", "disturbance.direction=0")

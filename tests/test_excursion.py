@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rotctl.maths.rotations import rotate
 from rotctl.mechanics import excursion
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.rotations import rotate
 
 Y = np.array([0.0, 1.0, 0.0])
 PERIOD = 1.0 / 60.0

@@ -5,13 +5,13 @@ import re
 import pytest
 from here import swept
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices.listing import shipped
+from rotctl.choices.overrides import parsed
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import shipped
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.judge import COLUMNS
-from rotctl.overrides import parsed
 from rotctl.results.experiments import copies, experiment, matrix, names, read
 from rotctl.sweep.claimed import require_claims
 from rotctl.sweep.plan import planned

@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 import yaml
 
-from rotctl.config import composed
+from rotctl.config.config import composed
+from rotctl.config.schema import check
 from rotctl.control import Controller, compiled, kinds
 from rotctl.control.settings import TaskGains
 from rotctl.control.task import task
 from rotctl.native.library import FOLDER, library
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 PAGE = Path(__file__).parents[1] / "docs" / "extending.md"

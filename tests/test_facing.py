@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl import scenario
 from rotctl.behaviours.facing import FACING
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.mechanics.state import read
+from rotctl.runs import scenario
 from rotctl.simulation.start import Start, place
 
 # World direction of the trunk's front, left and up at phase 0.

@@ -9,7 +9,7 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
@@ -20,7 +20,7 @@ from rotctl.report.filmstrip import filmstrip
 from rotctl.report.happenings import halts, happenings, stall
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
-from rotctl.run import LOG_NAME, run
+from rotctl.runs.run import LOG_NAME, run
 
 
 @pytest.fixture(scope="module")

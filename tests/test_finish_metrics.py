@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics.early import too_short
 from rotctl.metrics.finish import FinishCriteria, judge, rolled, upright
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 ASKED = {
     "angular_velocity_commanded": 0.5,

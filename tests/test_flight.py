@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from flights import ARCHED, HEAD_FIRST, LEFT, LONG, TUCK, flier, fly, spawn
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.shape import Shapes
 from rotctl.motion import make_pose
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 
 @pytest.fixture(scope="module")

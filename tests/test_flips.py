@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.maths.rotations import rotate
 from rotctl.metrics.flip import FlipCriteria, longest_flight, measure, turn
 from rotctl.metrics.flip import judge as judge_flip
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.rotations import rotate
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 LANDING = StandingCriteria("landing", "landing", ("foot_l", "foot_r"), 0.5, 0.8, 20.0, 0.25)

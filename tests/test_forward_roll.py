@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.config import load
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.summary import summarise
+from rotctl.config.config import load
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 
 
 def roll(*overrides):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.gathering import Beside
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.task import TASK
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 POSE = "start.postures.left.pose"
 # One foot a quarter of a metre behind the other, and turned out by 17 degrees.

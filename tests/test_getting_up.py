@@ -14,14 +14,14 @@ from rotctl.behaviours.placing import Above, Opposite
 from rotctl.behaviours.posing import ReachSettings
 from rotctl.behaviours.stages import Stage, mirrored
 from rotctl.behaviours.until import Low
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read
 from rotctl.metrics.finish import upright
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.start import place
 
 FEET = ("foot_l", "foot_r")

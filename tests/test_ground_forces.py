@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.mechanics.contacts import read_contacts
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation import ground_forces
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.ground_forces import Compiled, Reference

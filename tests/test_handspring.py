@@ -10,12 +10,12 @@ import pytest
 from rotctl.behaviours.landing import Landing
 from rotctl.behaviours.posing import TurnSettings
 from rotctl.behaviours.stages import Stage, mirrored
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics.acrobatic import AcrobaticCriteria, judge, out_of_order, told
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 HANDS, FEET = ("forearm_l", "forearm_r"), ("foot_l", "foot_r")

@@ -10,13 +10,13 @@ from rotctl.behaviours.poising import Shift, _hands, _over
 from rotctl.behaviours.posing import GlideSettings
 from rotctl.behaviours.stages import Stage, mirrored
 from rotctl.behaviours.until import Over
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.state import read
 from rotctl.metrics.acrobatic import HeldCriteria, judge, longest_held
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 HANDS = ("forearm",)

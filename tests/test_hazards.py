@@ -6,15 +6,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import Controller, compiled
 from rotctl.log import RunLog
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.contacts import contact_jacobian, realised_forces
 from rotctl.mechanics.state import read
 from rotctl.report import shapes, stored_model
-from rotctl.run import LOG_NAME, run
-from rotctl.scenario import build
+from rotctl.runs.run import LOG_NAME, run
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 

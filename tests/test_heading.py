@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.config import load
-from rotctl.scenario import build
+from rotctl.config.config import load
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 HEADINGS = (37, 90, 180)  # [deg]

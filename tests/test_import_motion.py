@@ -10,10 +10,10 @@ from captures import adult, bvh_text, in_order
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from rotctl.cli import main
-from rotctl.clip_wording import _clock
-from rotctl.config import load
-from rotctl.listing import conf_dir
+from rotctl.choices.listing import conf_dir
+from rotctl.cli.cli import main
+from rotctl.cli.clip_wording import _clock
+from rotctl.config.config import load
 from rotctl.motion import load_clip
 from rotctl.motion.flight import ADULT_LEG, Flight, flights
 from rotctl.motion.importing import import_motion
@@ -21,8 +21,8 @@ from rotctl.motion.preview import motion_of
 from rotctl.motion.reading import read_capture
 from rotctl.motion.turning import rotation_between_postures
 from rotctl.motion.writing import text
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 SHARED = Path(__file__).resolve().parents[1].parent / "shared" / "motions"
 LIMBS = ("hip", "knee", "shoulder", "elbow")
@@ -240,7 +240,7 @@ def test_import_says_what_it_made_of_the_file(captured, tmp_path, cli, monkeypat
 
 
 def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
-    monkeypatch.setattr("rotctl.commands.clips.CLIP_FRAMES", 2)
+    monkeypatch.setattr("rotctl.cli.commands.clips.CLIP_FRAMES", 2)
     out = tmp_path / "clip.yaml"
     keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
     for command, file in (("import-motion", captured), ("author-motion", keys)):

@@ -8,16 +8,16 @@ import pytest
 from here import Here, swept, without_processes
 from sweep_cli import logs
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices.listing import choices
+from rotctl.cli.cli import main
+from rotctl.config.config import load
+from rotctl.config.identity import run_id
 from rotctl.errors import InputError
-from rotctl.identity import run_id
-from rotctl.listing import choices
 from rotctl.log import RunLog
 from rotctl.metrics import judge as metrics
 from rotctl.results.index import read
-from rotctl.run import make, run
-from rotctl.scenario import model_of
+from rotctl.runs.run import make, run
+from rotctl.runs.scenario import model_of
 from rotctl.sweep.judging import criteria, judge
 from rotctl.sweep.plan import planned
 from rotctl.sweep.points import points

@@ -2,9 +2,9 @@
 
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 
 def complaint(overrides):

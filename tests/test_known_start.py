@@ -10,18 +10,18 @@ import yaml
 from logs import changed as with_arrays
 from scipy.spatial.transform import Rotation
 
-from rotctl import listing
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices import listing
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
-from rotctl.recorded_start import make
-from rotctl.scenario import build
+from rotctl.runs.recorded_start import make
+from rotctl.runs.scenario import build
+from rotctl.settings.written import to_dict
 from rotctl.simulation.clearance import clearance
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.known import Known, StateSettings, pitch
 from rotctl.simulation.start import beginning
-from rotctl.written import to_dict
 
 ROW = 30
 STATE = StateSettings(

@@ -2,9 +2,9 @@
 
 import pytest
 
-from rotctl.config import load
+from rotctl.choices.listing import own
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import own
 from rotctl.sweep.points import points
 
 IS_ANOTHER = "would only call it so, and that is another"

@@ -6,13 +6,13 @@ import pytest
 
 from rotctl.behaviours.landing import Landing
 from rotctl.behaviours.support import ends, middle
-from rotctl.config import composed, load
+from rotctl.config.config import composed, load
+from rotctl.config.schema import check
 from rotctl.errors import InputError
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 from rotctl.simulation.start import place
-from rotctl.summary import summarise
 
 EXACT = ["start.scatter=0", "start.tilt=0", "start.falling.across=0"]
 LAW = "start.falling.landing"

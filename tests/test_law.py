@@ -12,12 +12,12 @@ import pytest
 from exact import Polished, written_out
 from questions import any_task, look_at, with_tasks
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import condensed
 from rotctl.control.kinds import KINDS
 from rotctl.qp.active_set import ActiveSet
 from rotctl.qp.boxqp import BoxQP
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 SAME = 1e-9  # of the largest torque, where no limit binds
 LIMITED = 1e-5  # [N m] where one does: the condensed form then squares its rows

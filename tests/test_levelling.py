@@ -6,12 +6,12 @@ import pytest
 from flights import ARCHED, HEAD_FIRST, LONG, TUCK, flier, spawn
 
 from rotctl.behaviours.levelling import Ahead, Levelled, _solved
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics import dive
 from rotctl.motion import make_pose
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 SEEDS = (2001, 2014, 2015)  # without arms each enters 5 degrees off, or 6
@@ -131,8 +131,8 @@ def test_levelling_is_of_turns_about_left():
 
 
 def _pirouette_with_arms():
-    from rotctl.config import composed
-    from rotctl.schema import check
+    from rotctl.config.config import composed
+    from rotctl.config.schema import check
 
     data = composed(["behaviour=pirouette"])
     for stage in data["behaviour"]["stages"]:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 LIFT = [0.1, 0.2, -0.3, 0.05, 0.15]
 

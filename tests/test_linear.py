@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rotctl
-from rotctl.linear import NotPositiveDefiniteError, product, solve
+from rotctl.maths.linear import NotPositiveDefiniteError, product, solve
 
 RNG = np.random.default_rng(5)
 PACKAGE = Path(rotctl.__file__).parent
@@ -75,7 +75,7 @@ def test_nothing_between_start_and_log_hangs_on_the_processor(path):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if hangs_on_processor(node)
     ]
-    assert not found, "use rotctl.linear or math, whose bits no processor changes"
+    assert not found, "use rotctl.maths.linear or math, whose bits no processor changes"
 
 
 def hangs_on_processor(node):
@@ -108,6 +108,6 @@ def test_that_search_finds(line):
 
 def test_that_search_looks_into_what_makes_a_run():
     looked = {str(path.relative_to(PACKAGE)) for path in RUN_ONLY}
-    modules = ("rotations", "control/condensed", "simulation/lockstep", "adopting/meshes")
+    modules = ("maths/rotations", "control/condensed", "simulation/lockstep", "adopting/meshes")
     for module in (*modules, "metrics/rolling"):
         assert f"{module}.py" in looked

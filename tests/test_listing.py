@@ -2,9 +2,9 @@
 
 import pytest
 
-from rotctl import listing
+from rotctl.choices import listing
+from rotctl.choices.listing import choices, conf_dir, groups
 from rotctl.errors import InputError
-from rotctl.listing import choices, conf_dir, groups
 
 
 def test_every_group_of_the_issue_is_listed():
@@ -37,7 +37,7 @@ def conf(tmp_path, monkeypatch):
     (tmp_path / "package").mkdir()
     (tmp_path / "conf" / "start").mkdir(parents=True)
     (tmp_path / "conf" / "config.yaml").write_text("seed: 0\n")
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "listing.py"))
+    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
     return tmp_path / "conf"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from both import along
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import Controller, compiled
 from rotctl.errors import InputError
 from rotctl.log import read_attributes
@@ -17,8 +17,8 @@ from rotctl.mechanics import model as models
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.contacts import contact_jacobian, read_contacts
 from rotctl.mechanics.state import read
-from rotctl.run import in_memory, run
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory, run
+from rotctl.runs.scenario import build
 from rotctl.simulation import lockstep, pgs
 from rotctl.simulation.lockstep import LockstepStepper
 

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pytest
 
-from rotctl.cli import main
+from rotctl.cli.cli import main
 from rotctl.errors import LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import SCHEMA_VERSION, names_of

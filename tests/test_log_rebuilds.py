@@ -7,13 +7,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load, recorded
-from rotctl.listing import choices
+from rotctl.choices.listing import choices
+from rotctl.config.config import load, recorded
 from rotctl.log import RunLog
 from rotctl.mechanics.model import acting
 from rotctl.report import stored_model
-from rotctl.run import make
-from rotctl.scenario import build, model_of
+from rotctl.runs.run import make
+from rotctl.runs.scenario import build, model_of
 
 DOCS = Path(__file__).parent.parent / "docs"
 CASES = [

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rotctl.cli import main
+from rotctl.cli.cli import main
 from rotctl.meant import MANY, NEAR, instead, instead_of_many, meant
 
 

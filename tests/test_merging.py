@@ -7,13 +7,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import compiled
 from rotctl.errors import InputError
 from rotctl.mechanics.contacts import Contacts, contact_jacobian, read_contacts
 from rotctl.mechanics.merging import APART, Merging, merged
 from rotctl.mechanics.state import read
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 NEAR = Merging(distance=0.03, angle=45.0)

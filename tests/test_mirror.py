@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.motion.mirror import symmetric
 from rotctl.motion.turning import Motion
-from rotctl.scenario import model_of
+from rotctl.runs.scenario import model_of
 
 
 @pytest.mark.parametrize("yaw", [0.0, 180.0])

@@ -6,9 +6,9 @@ Nothing of a law may know left from right: what one side does better is in the d
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.motion.sides import other_side, sign_of
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 ACROSS = np.array([1.0, -1.0, 1.0])  # of a vector, in a mirror along the way

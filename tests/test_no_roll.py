@@ -8,12 +8,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics.rolling import measure
 from rotctl.metrics.rolling_rules import failure_reason
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.summary import summarise
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 
 DOCS = Path(__file__).parents[1] / "docs"
 

@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours import obliqueness
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 OBLIQUE = [12.0, 5.0, -3.0, 2.0, 1.0]
 

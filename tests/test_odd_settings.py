@@ -6,11 +6,11 @@ from typing import get_args, get_type_hints
 import pytest
 
 from rotctl.behaviours.aims import Aim
-from rotctl.config import composed
+from rotctl.config.config import composed
+from rotctl.config.schema import check
 from rotctl.control.kinds import KINDS
 from rotctl.errors import LONGEST, InputError, LogError
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 STAND = ["behaviour=stand", "duration=1"]

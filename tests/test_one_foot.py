@@ -9,13 +9,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.pivoting import Bring, Escapes
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
 from rotctl.metrics.one_foot import judge, measure
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1 / 240
 

@@ -5,12 +5,12 @@ import yaml
 from test_adopt import text
 
 from rotctl import api
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices.override_files import _text, blamed, expanded
+from rotctl.choices.overrides import parsed
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.override_files import _text, blamed, expanded
-from rotctl.overrides import parsed
-from rotctl.written import to_dict
+from rotctl.settings.written import to_dict
 
 
 @pytest.fixture(autouse=True)

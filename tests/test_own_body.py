@@ -7,14 +7,14 @@ import yaml
 from captures import adult
 from test_adopt import text
 
-from rotctl import listing
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.choices import listing
+from rotctl.choices.listing import own
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import own
-from rotctl.run import make, run
-from rotctl.scenario import build
-from rotctl.written import to_dict
+from rotctl.runs.run import make, run
+from rotctl.runs.scenario import build
+from rotctl.settings.written import to_dict
 
 INLINE = "character={kind: mjcf, file: robot.xml}"
 

@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 import yaml
 
-from rotctl import api, listing
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl import api
+from rotctl.choices import listing
+from rotctl.choices.listing import conf_dir, named_file
+from rotctl.choices.own_folder import kinds, make
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir, named_file
 from rotctl.motion import load_clip
-from rotctl.own_folder import kinds, make
 from rotctl.results import experiments
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.tune.space import load_space
 
 

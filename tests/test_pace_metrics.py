@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.cli.wording import readable
+from rotctl.config.config import load
 from rotctl.metrics.judge import settling
 from rotctl.metrics.pace import measure, off
-from rotctl.wording import readable
 
 PERIOD = 1.0 / 60.0
 ASKED = {"angular_velocity_commanded": 0.5, "speed_commanded": 1.0}

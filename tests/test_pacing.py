@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.pacing import SLIP, Clock, Pace, PaceSettings
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.judge import judge
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1.0 / 60.0
 SETTINGS = PaceSettings(

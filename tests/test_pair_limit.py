@@ -7,15 +7,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import pair_limit
 from rotctl.mechanics.contacts import read_contacts
 from rotctl.mechanics.pair_limit import LIMIT, check, crowded, triangles
 from rotctl.mechanics.terrain import uneven
-from rotctl.run import LOG_NAME, run
-from rotctl.scenario import build
+from rotctl.runs.run import LOG_NAME, run
+from rotctl.runs.scenario import build
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.stepping import MujocoStepper
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.metrics import dive, flip, peaks
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 NAMES = ("hip_y_l", "hip_x_r", "knee_l", "knee_r", "ankle_y_l", "neck_y")
 LIMITS = [100.0, 50.0, 80.0, 80.0, 40.0, 10.0]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from rotctl.config import load
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.config.config import load
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation import pgs
 from rotctl.simulation.pgs import NO_NORMAL, Rows, solve, solve_compiled
 

@@ -9,12 +9,12 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import frame_of
 from rotctl.behaviours.flight import Flight
-from rotctl.config import composed, load
+from rotctl.config.config import composed, load
+from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.metrics.flip import judge, longest_flight, turn
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.schema import check
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 PERIOD = 1 / 240

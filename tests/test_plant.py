@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.plant import Motors
-from rotctl.run import in_memory
-from rotctl.scenario import build, model_of
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build, model_of
 from rotctl.simulation.episode import Episode
 
 RANDOMISED = ("plant=randomised",)

@@ -8,8 +8,8 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import plot as module
@@ -28,7 +28,7 @@ from rotctl.report.signals import (
     torque_fractions,
 )
 from rotctl.report.timeline import contact_bars
-from rotctl.run import LOG_NAME, run
+from rotctl.runs.run import LOG_NAME, run
 
 ALL = slice(None)
 
@@ -322,7 +322,7 @@ def test_prints_read_each_dataset_once(log):
 
 
 def test_outlines_are_as_tall_as_the_body():
-    from rotctl.scenario import model_of
+    from rotctl.runs.scenario import model_of
 
     mj = model_of(load([])).mj
     data = mujoco.MjData(mj)

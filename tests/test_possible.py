@@ -6,9 +6,9 @@ import pytest
 from flights import HEAD_FIRST, flier, fly
 
 from rotctl.behaviours.possible import GONE
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 KEY = "behaviour.target_excursion"
 MOST = 48.0  # [kg m2/s] of the dives' launches

@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rotctl.config import load
+from rotctl.cli.wording import readable
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.onset import Onset
 from rotctl.metrics.judge import judge
@@ -18,11 +19,10 @@ from rotctl.report.site.charts import charts
 from rotctl.report.site.grid import grid
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.table import Table
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import summarise
 from rotctl.simulation.episode import Episode
-from rotctl.summary import summarise
-from rotctl.wording import readable
 
 PUSH = ("seed=2001", "disturbance=push", "disturbance.time=1.0")
 

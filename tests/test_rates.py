@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.config import load
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.config.config import load
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 RATES = [(30, 8), (60, 4), (120, 2), (240, 1)]  # [Hz], physics steps a control step
 

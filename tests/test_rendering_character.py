@@ -4,12 +4,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl import scenario
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.mechanics.bodies import lowest_and_highest
 from rotctl.mechanics.model import build
 from rotctl.report import gl
 from rotctl.report.scene import opened
+from rotctl.runs import scenario
 from rotctl.simulation.episode import Episode
 
 

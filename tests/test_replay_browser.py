@@ -9,11 +9,11 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.log import RunLog
 from rotctl.report import stored_model
 from rotctl.report.replay import replay
-from rotctl.run import LOG_NAME, run
+from rotctl.runs.run import LOG_NAME, run
 
 STORED = Path(__file__).parent / "pictures" / "replay.png"
 SMALL = (160, 120)  # pixels of the stored picture

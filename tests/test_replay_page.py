@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from logs import changed
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import stored_model
@@ -22,7 +22,7 @@ from rotctl.report.replay import page, replay
 from rotctl.report.replay_data import data
 from rotctl.report.rows import at_rate
 from rotctl.report.shapes import LEFT_SHADE
-from rotctl.run import LOG_NAME, run
+from rotctl.runs.run import LOG_NAME, run
 
 STATIC = Path(stored_model.__file__).parent / "static"
 EVIL = "<script>alert(1)</script>"

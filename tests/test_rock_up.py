@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.until import Leant
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.config.schema import changed
 from rotctl.errors import InputError
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.schema import changed
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.known import StateSettings
 
 UP = GettingUpCriteria("up", "getting_up", ("foot_l", "foot_r"), 4.0, 1.0, 0.8, 20.0, 0.5)

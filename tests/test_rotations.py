@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl import rotations
+from rotctl.maths import rotations
 
 RNG = np.random.default_rng(0)
 VECTORS = [scale * RNG.normal(size=3) for scale in (1e-9, 1e-3, 0.3, 1.0, 3.0, 20.0)]

@@ -9,14 +9,14 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import FACING
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics import appearance
 from rotctl.metrics.rolling import measure
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.skeleton import Skeleton
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 LEAST = 1.7  # [rev] in 5 s; the slowest row turns at 0.4 rev/s
 ROWS = [

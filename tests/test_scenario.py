@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.choices.listing import conf_dir
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 
 def run_id(*overrides):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.report.frame import moments, turns_done
 from rotctl.report.skill import parts
 from rotctl.report.stage_names import stage_names
-from rotctl.run import run
+from rotctl.runs.run import run
 
 RATE = 60.0
 

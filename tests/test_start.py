@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl import scenario
 from rotctl.behaviours.behaviour import Placement
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
+from rotctl.maths.rotations import advance
 from rotctl.mechanics.bodies import lowest_and_highest
-from rotctl.rotations import advance
-from rotctl.run import in_memory
+from rotctl.runs import scenario
+from rotctl.runs.run import in_memory
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.start import SINK, Posture, Start, StartSettings, draw, place
 

@@ -15,12 +15,12 @@ from rotctl.behaviours.similar import similar as asking
 from rotctl.behaviours.until import Until
 from rotctl.behaviours.ways import Posture
 from rotctl.behaviours.wheeling import Carry, Place, Stride
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.similar import similar
 from rotctl.errors import InputError
 from rotctl.mechanics.stature import Likeness, grown, likeness
-from rotctl.run import in_memory, make
-from rotctl.scenario import build, model_of
+from rotctl.runs.run import in_memory, make
+from rotctl.runs.scenario import build, model_of
 from rotctl.simulation import aloft, falling
 
 CHILD = ("character.height=1.2", "character.mass=23")

@@ -11,8 +11,8 @@ import pytest
 from here import swept
 from scipy.stats import norm
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
@@ -22,7 +22,7 @@ from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import Table, differing, table, tabulated
-from rotctl.run import make, run
+from rotctl.runs.run import make, run
 
 ARGUMENTS = [
     "behaviour=forward_roll_1_on_head,forward_roll_1_phase",

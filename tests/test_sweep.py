@@ -10,16 +10,16 @@ import pytest
 from here import Here, without_processes
 from sweep_cli import logs, published
 
-from rotctl import scenario
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
+from rotctl.config.identity import run_id
 from rotctl.errors import InputError
-from rotctl.identity import run_id
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
-from rotctl.run import make
-from rotctl.run_folder import publish
+from rotctl.runs import scenario
+from rotctl.runs.run import make
+from rotctl.runs.run_folder import publish
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned

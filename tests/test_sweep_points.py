@@ -4,10 +4,10 @@ from importlib import import_module
 
 import pytest
 
-from rotctl import config
-from rotctl.config import load
+from rotctl.choices.listing import choices
+from rotctl.config import config
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import choices
 from rotctl.sweep.assignments import quickly
 from rotctl.sweep.points import points
 from rotctl.sweep.values import values

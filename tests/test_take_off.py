@@ -4,11 +4,11 @@ import pytest
 
 from rotctl.behaviours.launch import Launch
 from rotctl.behaviours.take_off import at_speed
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.flip import judge
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 
 def launching(behaviour):

@@ -7,19 +7,19 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import model as models
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
-from rotctl.run import LOG_NAME, in_memory, run
-from rotctl.scenario import build, model_of
-from rotctl.schema import check
+from rotctl.runs.run import LOG_NAME, in_memory, run
+from rotctl.runs.scenario import build, model_of
+from rotctl.settings.written import to_dict
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
-from rotctl.written import to_dict
 
 ENDLESS = ["flat", "incline", "decline"]
 FINITE = ["uneven", "bumps", "stairs_down", "stairs_up", "obstacles"]

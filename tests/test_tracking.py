@@ -12,11 +12,11 @@ import pytest
 from questions import Asking
 from scipy.spatial.transform import Rotation
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control.kinds import KINDS
 from rotctl.control.settings import TaskGains
 from rotctl.control.task import task
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
 HAND = (0.0, 0.0, -0.25)  # [m] in the forearm's frame

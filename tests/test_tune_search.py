@@ -11,10 +11,11 @@ import pytest
 import yaml
 from sweep_cli import held_after, kill
 
-from rotctl import config, listing
-from rotctl.cli import main
+from rotctl.choices import listing
+from rotctl.cli.cli import main
+from rotctl.config import config
 from rotctl.errors import InputError, RotctlError
-from rotctl.run import run
+from rotctl.runs.run import run
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.lock import locked
 from rotctl.tune import result

@@ -6,10 +6,11 @@ import os
 import pytest
 import yaml
 
-from rotctl.config import load
+from rotctl.choices.listing import conf_dir
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.listing import conf_dir
 from rotctl.metrics.expression import NAMES
+from rotctl.settings.written import to_dict
 from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (
     configs,
@@ -20,7 +21,6 @@ from rotctl.tune.values import (
     training_seeds,
     variations,
 )
-from rotctl.written import to_dict
 
 GAINS = conf_dir() / "tune" / "rolling_gains.yaml"
 DRAWN = "tune draws the seeds of its runs itself, from 1,000,000 on; those below are for judging"

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from logs import changed
 
-from rotctl import verify as verifying
-from rotctl.cli import main
-from rotctl.config import load, recorded
+from rotctl.cli.cli import main
+from rotctl.config.config import load, recorded
 from rotctl.errors import LogError
 from rotctl.log import RunLog
-from rotctl.run import make
-from rotctl.verify import repeat
+from rotctl.runs import verify as verifying
+from rotctl.runs.run import make
+from rotctl.runs.verify import repeat
 
 ROWS = 30
 

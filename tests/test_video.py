@@ -7,13 +7,13 @@ import sys
 import numpy as np
 import pytest
 
-from rotctl.cli import main
-from rotctl.config import load
+from rotctl.cli.cli import main
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report import encoder
 from rotctl.report.video import FOOTER, FRAME, HEADER, video
-from rotctl.run import LOG_NAME, run
+from rotctl.runs.run import LOG_NAME, run
 
 
 @pytest.fixture(scope="module")

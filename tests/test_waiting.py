@@ -7,10 +7,10 @@ import pytest
 
 from rotctl.behaviours.pacing import Pace
 from rotctl.behaviours.waiting import Waiting
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 
 @pytest.fixture(scope="module")

@@ -6,13 +6,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.disturbance import Nothing, OnePush
 from rotctl.mechanics.water import Water
 from rotctl.motion import make_pose
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 
 PERIOD = 1.0 / 240.0
 DEEP = -12.0  # [m] all of a body under water that begins at -10

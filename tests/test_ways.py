@@ -9,11 +9,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.ways import FaceDown, Rolls, Way
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.getting_up import GettingUpCriteria, judge
-from rotctl.run import in_memory
-from rotctl.scenario import build
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.known import StateSettings
 
 PARTS = ("rock_back", "press_up", "roll_up", "at once", "ends rolling")

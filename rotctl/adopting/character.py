@@ -22,8 +22,8 @@ from rotctl.adopting.solid import solid
 from rotctl.adopting.straight import face_forward, straighten
 from rotctl.adopting.tree import Segment, hung
 from rotctl.errors import InputError
+from rotctl.maths.rotations import length
 from rotctl.motion.naming import find_roles
-from rotctl.rotations import length
 
 _ADULT = {
     "waist": 200.0, "chest": 200.0, "spine": 200.0, "neck": 50.0, "hip": 250.0, "knee": 250.0,

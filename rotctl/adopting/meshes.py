@@ -13,8 +13,8 @@ import numpy as np
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.linear import product
-from rotctl.rotations import Array, length
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, length
 
 MAX_MESHES = 500
 MAX_BYTES = 30_000_000  # of one file

@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 
 from rotctl.adopting.tree import Segment
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, length
 from rotctl.mechanics.hulls import corners
-from rotctl.rotations import Array, length
 
 LEAST_SEEN = 0.003  # [m] radius, below which a shape is not even looked at
 _BOXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_MESH)

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from rotctl.adopting.tree import Segment
-from rotctl.rotations import dot, length
+from rotctl.maths.rotations import dot, length
 
 PLACE = 0.01  # [m] apart, from which it is told
 TURN = 0.05  # [rad] of a range or an axis

@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from rotctl.linear import product, solve
-from rotctl.rotations import Array
+from rotctl.maths.linear import product, solve
+from rotctl.maths.rotations import Array
 
 DIFFERENCE = 1e-6  # of an unknown, for slopes
 STEPS = 500  # from some start of a limb a dozen are enough

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 
 from rotctl.adopting.squares import least_squares
-from rotctl.linear import product
-from rotctl.rotations import Array, dot, length
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, dot, length
 
 HANGS = 0.9  # cosine of a limb's segment with down, from which it is left as it is
 TO_ZERO = 0.03  # [1/rad] pull of straightened joints to where they were

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from rotctl.linear import product
-from rotctl.rotations import Array
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 
 
 @dataclass

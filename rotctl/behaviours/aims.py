@@ -22,10 +22,10 @@ from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.stepping import Stepping
 from rotctl.behaviours.wheeling import Carry, Place, Stride
 from rotctl.control.task import Tasks
+from rotctl.maths.rotations import dot
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -15,11 +15,11 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array, crossed, dotted
 from rotctl.mechanics.bodies import ROOT_BODY, SIDES, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array, crossed, dotted
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 Joints = Annotated[tuple[str, ...], Field(min_length=1, max_length=8)]  # of a limb, in C, too
 

@@ -11,10 +11,10 @@ from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
-from rotctl.linear import solve
+from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

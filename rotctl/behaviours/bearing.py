@@ -4,8 +4,8 @@ from math import atan, cos, degrees, sin, tan
 from typing import NamedTuple
 
 from rotctl.behaviours.facing import UP, Frame, frame_of
+from rotctl.maths.rotations import Array
 from rotctl.motion import RollAbout
-from rotctl.rotations import Array
 
 
 class Bearing(NamedTuple):

@@ -6,8 +6,8 @@ from typing import NamedTuple, Protocol, TypeVar
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.settings import ContactGains, PoseGains, TaskGains
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
 
 Memory = TypeVar("Memory")
 

@@ -13,11 +13,11 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -11,13 +11,13 @@ from rotctl.behaviours.chaining import Chain, Part, RestSettings
 from rotctl.behaviours.rolling_settings import RollingSettings
 from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.behaviours.ways import Way, Ways
-from rotctl.checked import clip
 from rotctl.control import ControllerSettings
 from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings import MOST_PARTS, SPARSE, STRICT, Positive
+from rotctl.settings.checked import clip
+from rotctl.settings.settings import MOST_PARTS, SPARSE, STRICT, Positive
 
 LEAST_TURNS = 2.0  # [rev] of a roll that follows another part
 

@@ -21,12 +21,12 @@ from rotctl.behaviours.staged import Staged, StagedMemory
 from rotctl.behaviours.support import forward
 from rotctl.control import Command, ControllerSettings
 from rotctl.errors import InputError
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.chain_settings import ChainSettings

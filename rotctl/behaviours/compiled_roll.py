@@ -12,10 +12,10 @@ from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.pacing import Clock, Pace
 from rotctl.behaviours.remembering import RollingMemory
 from rotctl.behaviours.waiting import Waiting
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.motion import PosePair, ReferencePair
 from rotctl.native.layout import structure
-from rotctl.rotations import Array
 
 PACE = (  # its settings that C takes as they are
     *("travel", "own", "calm", "swing", "swing_from", "surge", "surge_from", "wait", "width"),

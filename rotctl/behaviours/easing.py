@@ -3,7 +3,7 @@
 from math import copysign, sqrt
 from typing import TypeVar
 
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 SETTLING = 4.0  # [periods] in which a value comes near, so that it does not overshoot
 

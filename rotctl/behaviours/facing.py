@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from rotctl.maths.rotations import Array, about_up, crossed, multiply, rotate
 from rotctl.motion import RollAbout
-from rotctl.rotations import Array, about_up, crossed, multiply, rotate
 
 UP = np.array([0.0, 0.0, 1.0])
 

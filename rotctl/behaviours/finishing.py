@@ -21,12 +21,12 @@ from rotctl.behaviours.staged_settings import StagedSettings
 from rotctl.behaviours.stages import Stage, TaskSettings
 from rotctl.behaviours.support import pendulum_rate
 from rotctl.control import Command, ControllerSettings
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import RollAbout
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 
 AHEAD = 0.9  # [rev] before the last roll is over: it leaves the squat then, hands on the ground
 

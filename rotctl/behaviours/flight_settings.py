@@ -9,7 +9,7 @@ from rotctl.behaviours.landing import LandingSettings
 from rotctl.behaviours.levelling import LevellingSettings
 from rotctl.meant import instead
 from rotctl.motion import Turn
-from rotctl.settings import SPARSE, STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings.settings import SPARSE, STRICT, Finite, Fraction, NonNegative, Positive
 
 TUCK = "tuck"  # the shape that every flight has
 

@@ -10,11 +10,11 @@ from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -8,10 +8,10 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.support import FACING, Facing
 from rotctl.control.task import Tasks
+from rotctl.maths.rotations import about_up
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
-from rotctl.rotations import about_up
-from rotctl.settings import STRICT
+from rotctl.settings.settings import STRICT
 
 
 @validated(frozen=True, config=STRICT)

@@ -18,12 +18,12 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.support import ends, middle
+from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.bodies import ROOT_BODY, body_ids, lowest_and_highest
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
 from rotctl.motion import Poses, Turn, make_pose_pair
-from rotctl.rotations import Array, quaternion_from_rotation_vector
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 ATTITUDES = np.arange(-80, 141) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
 

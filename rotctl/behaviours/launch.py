@@ -17,11 +17,11 @@ from rotctl.behaviours.flight import Flight
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
-from rotctl.linear import solve
+from rotctl.maths.linear import solve
+from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, dot
-from rotctl.settings import STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, Fraction, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -13,11 +13,11 @@ from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.swinging import arrival
 from rotctl.control.task import Tasks
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Positive, Vector
+from rotctl.settings.settings import STRICT, Positive, Vector
 
 
 @validated(frozen=True, config=STRICT)

@@ -9,10 +9,10 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours import support
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import dot
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

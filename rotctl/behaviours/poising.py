@@ -26,11 +26,11 @@ from rotctl.behaviours import support
 from rotctl.behaviours.launch import pendulum_rate
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, Triple, cross, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, Triple, cross, dot
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 
 NARROW = 0.05  # [m] hands that are closer make no line
 

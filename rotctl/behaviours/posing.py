@@ -10,10 +10,10 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.easing import smooth
 from rotctl.behaviours.scene import Scene
+from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.model import Model
 from rotctl.motion import PosePair, Turn, make_pose
-from rotctl.rotations import Array, dot
-from rotctl.settings import STRICT, Finite, Positive, Range
+from rotctl.settings.settings import STRICT, Finite, Positive, Range
 
 Remembered = TypeVar("Remembered")
 

@@ -10,8 +10,8 @@ from math import copysign, degrees, pi, radians, tau
 from rotctl.behaviours.flight import Flight
 from rotctl.behaviours.launch import Launch, Whirl
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
 
 GONE = radians(60.0)  # already turned at take-off: as far as the strongest launches here
 KEY = "behaviour.target_excursion"

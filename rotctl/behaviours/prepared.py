@@ -18,10 +18,10 @@ from rotctl.control import ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.settings import ContactGains, PoseGains
 from rotctl.control.task import TASK, Tasks, task
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import SIDES, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.motion import make_pose_pair
-from rotctl.rotations import Array
 
 
 @dataclass(frozen=True)

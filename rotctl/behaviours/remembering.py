@@ -12,10 +12,10 @@ from rotctl.behaviours.bearing import Bearing, Bearings
 from rotctl.behaviours.course import Course, Going
 from rotctl.behaviours.facing import UP
 from rotctl.behaviours.pacing import SLIP, Clock, Pace
+from rotctl.maths.rotations import Array, about_up, dot, rotate
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array, about_up, dot, rotate
 
 if TYPE_CHECKING:  # which makes the roll that this is a part of
     from rotctl.behaviours.rolling_settings import RollingSettings

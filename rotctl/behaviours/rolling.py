@@ -31,13 +31,13 @@ from rotctl.control import Command, ControllerSettings
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array, advance, dot
 from rotctl.mechanics import excursion
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import over_phase
-from rotctl.rotations import Array, advance, dot
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.rolling_settings import RollingSettings

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.excursion import Excursion, ExcursionName
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
 
 
 class Begin(NamedTuple):

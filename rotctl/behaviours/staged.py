@@ -19,11 +19,11 @@ from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.stages import mirrored
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.settings import PoseGains
+from rotctl.maths.rotations import advance, rotation_between
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import advance, rotation_between
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.staged_settings import StagedSettings

@@ -24,7 +24,7 @@ from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles, other_side
-from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Vector
+from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Vector
 
 
 @validated(frozen=True, config=STRICT)

@@ -17,10 +17,10 @@ from rotctl.behaviours.scene import Scene, Step
 from rotctl.behaviours.support import Facing
 from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
-from rotctl.linear import product
+from rotctl.maths.linear import product
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
-from rotctl.settings import SPARSE, STRICT, NonNegative, Positive
+from rotctl.settings.settings import SPARSE, STRICT, NonNegative, Positive
 
 DOWN = 0.5  # of a swing, from which on a touch ends it
 LATE = 1.5  # swings, after which one ends that met no ground

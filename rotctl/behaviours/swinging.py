@@ -8,8 +8,8 @@ import numpy as np
 
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
-from rotctl.linear import product
-from rotctl.rotations import Array
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 
 REACH_DOWN = 0.85  # of a swing, from which on the foot
 UNDER = 0.03  # [m] is wanted so far under the ground: it meets it with some speed

@@ -9,10 +9,10 @@ import numpy as np
 from rotctl.behaviours.easing import smooth
 from rotctl.behaviours.flight_settings import TUCK, FlightSettings
 from rotctl.behaviours.landing import Contact
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes
 from rotctl.motion import make_pose
-from rotctl.rotations import Array
 
 AMOUNTS = np.arange(-10, 11) / 10.0  # of the tuck, at which inertia is tabulated
 INSTANTS = (np.arange(24) + 0.5) / 24  # of the time left, at which the plan is looked at

@@ -13,10 +13,10 @@ from rotctl.behaviours.poising import borne_at
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.touching import Airborne, Enters, Lands, Launched, Touches
 from rotctl.behaviours.wheeling import beyond
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import dot
-from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

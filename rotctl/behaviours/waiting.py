@@ -8,9 +8,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion import make_pose
-from rotctl.rotations import Array
 
 KEY = "behaviour.pace.pose"
 

@@ -8,11 +8,11 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import dot
-from rotctl.settings import MOST_PARTS, SPARSE, STRICT, Positive
+from rotctl.settings.settings import MOST_PARTS, SPARSE, STRICT, Positive
 
 
 @validated(frozen=True, config=STRICT)

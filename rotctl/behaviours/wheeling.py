@@ -17,11 +17,11 @@ from rotctl.behaviours.launch import Base, captured
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, cross, dot
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, cross, dot
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 SLOWEST = 1.0  # [rad/s] the slowest turn by which the time to a touch-down is reckoned

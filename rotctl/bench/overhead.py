@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from rotctl.config import load
-from rotctl.scenario import build, shared
+from rotctl.config.config import load
+from rotctl.runs.scenario import build, shared
 from rotctl.simulation.loop import simulate
 
 RUNS = 1000  # of short sweeps; of long ones an eighth

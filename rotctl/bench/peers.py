@@ -20,16 +20,16 @@ import mujoco
 import numpy as np
 
 from rotctl.bench.states import Recorded, record_roll, restore
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import Controller
 from rotctl.control.cone import friction_rows
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import Stack, collect
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
-from rotctl.rotations import Array
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 STATES, ROUNDS = 150, 3
 TRUTH = ["controller.solver=qpsolvers:daqp"]  # exact, on the condensed form

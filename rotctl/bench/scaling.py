@@ -16,7 +16,8 @@ import numpy as np
 
 from rotctl import files
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.config.schema import Config
 from rotctl.control import Command, Controller
 from rotctl.errors import InputError
 from rotctl.mechanics import model as models
@@ -24,7 +25,6 @@ from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import read
 from rotctl.native import library
-from rotctl.schema import Config
 
 CONTACTS = (0, 1, 2, 3, 4, 6, 8, 11, 15, 20, 24)  # the adult has no more than 25
 HINGES = (29, 37, 46, 58)

@@ -6,12 +6,12 @@ import mujoco
 import numpy as np
 
 from rotctl.bench.states import Recorded, record_roll, restore
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import Controller
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 
 CHOICES = {
     "boxqp condensed, compiled": ["controller.backend=compiled"],

@@ -10,12 +10,12 @@ from functools import partial
 from itertools import islice
 from statistics import median
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.control import Controller
 from rotctl.log import TrajectoryBuffer
+from rotctl.maths.rotations import Array
 from rotctl.qp import Problem, Solution, Solver, make_solver
-from rotctl.rotations import Array
-from rotctl.scenario import Scenario, build
+from rotctl.runs.scenario import Scenario, build
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.record import record
 

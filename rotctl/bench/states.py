@@ -6,9 +6,9 @@ from itertools import islice
 import mujoco
 
 from rotctl.control import Command
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
-from rotctl.scenario import Scenario
+from rotctl.runs.scenario import Scenario
 from rotctl.simulation.episode import Episode
 
 

@@ -11,11 +11,11 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
-from rotctl.config import load
+from rotctl.config.config import load
 from rotctl.log import TrajectoryBuffer
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
-from rotctl.scenario import build
+from rotctl.runs.scenario import build
 from rotctl.simulation.loop import simulate
 
 RUNS = {

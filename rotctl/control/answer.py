@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from rotctl.maths.rotations import Array
 from rotctl.qp import Solution
-from rotctl.rotations import Array
 
 
 @dataclass(frozen=True)

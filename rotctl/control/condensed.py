@@ -21,13 +21,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl import linear
 from rotctl.control.answer import Answer
 from rotctl.control.cone import solve_cone
 from rotctl.control.stack import Stack
-from rotctl.linear import NotPositiveDefiniteError, product
+from rotctl.maths import linear
+from rotctl.maths.linear import NotPositiveDefiniteError, product
+from rotctl.maths.rotations import Array
 from rotctl.qp import Solution, Solver
-from rotctl.rotations import Array
 
 LIMIT_SLACK = 1e-6  # [N m] a torque this far beyond its limit is rounding, and is clipped
 

@@ -10,9 +10,9 @@ from functools import lru_cache
 import numpy as np
 
 from rotctl.control.stack import Stack
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.qp import Problem, Solution, Solver, without_rows
-from rotctl.rotations import Array
 
 
 def solve_cone(

@@ -13,13 +13,13 @@ from rotctl.control.settings import BackendName, ControllerSettings
 from rotctl.control.stack import Stack, collect
 from rotctl.control.task import Command
 from rotctl.errors import InputError
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State, read
 from rotctl.native.library import NOT_BUILT, library
 from rotctl.qp import Solver, make_solver
 from rotctl.qp.active_set import ActiveSet
-from rotctl.rotations import Array
 
 LOGGED_ROWS = 3  # of each task
 LACKS = (

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 SOLVED_BY_FALLBACK, POSE_ONLY = 1, 2  # status; 0 is solved by the chosen solver
 

@@ -16,11 +16,11 @@ import numpy as np
 
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, rotation_to
 from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array, rotation_to
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,11 @@ import numpy as np
 from rotctl.control.answer import Answer
 from rotctl.control.cone import friction_rows
 from rotctl.control.stack import Stack
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import ROOT_DOFS, Model
 from rotctl.mechanics.state import State
 from rotctl.qp import Problem, Solver
-from rotctl.rotations import Array
 
 
 @dataclass(frozen=True)

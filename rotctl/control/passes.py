@@ -12,12 +12,12 @@ from rotctl.control.settings import FormName
 from rotctl.control.stack import Stack
 from rotctl.control.supervisor import FREE, RULES, Evidence
 from rotctl.control.task import Command
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import realised_forces
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.qp import Solution, Solver
-from rotctl.rotations import Array
 
 
 @dataclass(frozen=True)

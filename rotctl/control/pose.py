@@ -11,9 +11,9 @@ import mujoco
 import numpy as np
 
 from rotctl.control.settings import PoseGains
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
 
 
 class PoseTracker:

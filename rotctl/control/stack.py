@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 from rotctl.control.kinds import KINDS, Rows
 from rotctl.control.settings import ContactGains, ControllerSettings, PoseGains
 from rotctl.control.task import Command
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import contact_momentum_maps
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
 
 LEAST_TANGENT = 1e-9  # a direction this near a normal has no tangent
 

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.qp import make_solver, without_rows
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Fraction, NonNegative
+from rotctl.settings.settings import STRICT, Fraction, NonNegative
 
 SupervisorName = Literal[
     "as_written", "modified", "minimal", "convex_hull", "simulated", "simulated_free", "none"

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from rotctl.control.settings import ContactGains, PoseGains, TaskGains
 from rotctl.control.supervisor import SupervisorName, Thresholds
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.state import State
-from rotctl.rotations import Array
 
 # One task: an objective over the acceleration. Mirrored by `Task` in native/layout.h.
 TASK = np.dtype(

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.export.movement import ROOT, Movement
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 CENTIMETRES = 100.0
 ORDER = "ZXY"

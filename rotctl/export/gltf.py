@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from rotctl import __version__
 from rotctl.export.meshes import mesh_of
 from rotctl.export.movement import Movement
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 _FLOAT, _INDEX = 5126, 5125
 _VERTICES, _CORNERS = 34962, 34963

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.report.shapes import triangles
-from rotctl.rotations import Array
 
 AROUND, DOWN = 20, 10  # segments of round shapes
 FLAT = 40.0  # [m] half the side of a plane, which has none

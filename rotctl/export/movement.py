@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.errors import LogError
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.report import stored_model
 from rotctl.report.rows import drawable
-from rotctl.rotations import Array
 
 ROOT = 1  # MuJoCo's id of the character's first body
 

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from rotctl.export.movement import Movement
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # of a zip: equal runs give equal bytes
 

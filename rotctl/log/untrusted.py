@@ -14,10 +14,10 @@ import h5py
 import numpy as np
 
 from rotctl import files
-from rotctl.documents import UNPRINTABLE
 from rotctl.errors import InputError, LogError
 from rotctl.log import scales
 from rotctl.log.schema import ATTRIBUTES, GROUPS, OLDEST_READ, SCHEMA_VERSION
+from rotctl.settings.documents import UNPRINTABLE
 
 _FILTERS = {h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE, h5py.h5z.FILTER_FLETCHER32}
 

@@ -13,11 +13,11 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import body_id, is_character
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Phase, Time
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Drawn, ends
+from rotctl.settings.settings import STRICT, Drawn, ends
 
 HEAVIEST = 1000.0  # [kg] that a body may take up
 

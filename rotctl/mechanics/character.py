@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
-from rotctl.settings import (
+from rotctl.settings.settings import (
     SPARSE,
     STRICT,
     Finite,

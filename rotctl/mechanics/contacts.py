@@ -10,8 +10,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import is_character
-from rotctl.rotations import Array
 
 
 @dataclass(frozen=True)

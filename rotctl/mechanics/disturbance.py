@@ -13,14 +13,14 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, cross
 from rotctl.mechanics.bodies import ROOT_BODY, body_id
 from rotctl.mechanics.changes import Load, Slip
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import SHORTEST, Onset, Phase, Time, far_from
 from rotctl.mechanics.wind import Wind
-from rotctl.rotations import Array, cross
-from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends
+from rotctl.settings.settings import STRICT, Drawn, NonNegative, Positive, ends
 
 DISTURBANCE_STREAM = 2  # beside the start's, which is drawn from the seed alone, and the terrain's
 

@@ -25,7 +25,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.rotations import (
+from rotctl.maths.rotations import (
     Array,
     advanced,
     crossed,
@@ -34,7 +34,7 @@ from rotctl.rotations import (
     rotated,
     rotation_between,
 )
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 ExcursionName = Literal["oriented", "integral", "root", "clock"]
 

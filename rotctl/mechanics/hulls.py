@@ -3,8 +3,8 @@
 import mujoco
 import numpy as np
 
-from rotctl.linear import product
-from rotctl.rotations import Array
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.same import kept
 
 

@@ -14,9 +14,9 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, NonNegative
+from rotctl.settings.settings import STRICT, NonNegative
 
 
 @validated(frozen=True, config=STRICT)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from rotctl.linear import product, solve
+from rotctl.maths.linear import product, solve
+from rotctl.maths.rotations import Array, cross
 from rotctl.mechanics.bodies import ROOT_BODY
-from rotctl.rotations import Array, cross
 
 
 class Momentum(NamedTuple):

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
+from rotctl.maths.rotations import Array, Numbers, Triple, crossed, dotted
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, Numbers, Triple, crossed, dotted
 
 PARTS = 8  # of a change of shape, each with the inertia of its middle
 

@@ -5,12 +5,12 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts, read_contacts
 from rotctl.mechanics.merging import APART, Merging, merged
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import Momentum, read_momentum
-from rotctl.rotations import Array
 
 
 class State(NamedTuple):

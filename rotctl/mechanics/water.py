@@ -12,12 +12,12 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, cross, dot
 from rotctl.mechanics.bodies import ROOT_BODY, is_character
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.terrain import Basin
-from rotctl.rotations import Array, cross, dot
 
 ROUND = 0.25 * pi  # [-] of a box's face that the limb in it fills
 FLAT = 0.5  # [-] a limb so much less tall than long, such as a foot, has its length along its x

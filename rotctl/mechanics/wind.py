@@ -8,13 +8,13 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, cross, dot
 from rotctl.mechanics.bodies import ROOT_BODY, is_character
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import SHORTEST, Time, far_from
-from rotctl.rotations import Array, cross, dot
-from rotctl.settings import STRICT, Drawn, NonNegative, Positive, ends
+from rotctl.settings.settings import STRICT, Drawn, NonNegative, Positive, ends
 
 
 @validated(frozen=True, config=STRICT)

@@ -13,7 +13,7 @@ from rotctl.metrics import flip, standing
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 COLUMNS = (
     Column("touched", "What came down, and when [s]", ""),

@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.loads import Loads
 from rotctl.metrics.skeleton import Skeleton
-from rotctl.rotations import Array
 
 HEAD, SIDES = "head", ("_l", "_r")
 BEARING = 0.05  # [body weights] that a part bears, and does not only touch

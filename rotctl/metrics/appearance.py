@@ -6,13 +6,13 @@ from dataclasses import dataclass, fields
 import mujoco
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.metrics import across
 from rotctl.metrics.across import BEARING, HEAD, SIDES, at_hands
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.loads import loads
 from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
-from rotctl.rotations import Array
 from rotctl.same import kept
 
 COLUMNS = (

@@ -76,7 +76,7 @@ def along_frame(
     log: Arrays, vectors: NDArray[np.float64], rows: slice = slice(None)
 ) -> NDArray[np.float64]:
     """World vectors (n, 3) of some rows along the behaviour's forward, left and up there."""
-    from rotctl.linear import product  # MuJoCo's: to import it fails where MUJOCO_GL is wrong
+    from rotctl.maths.linear import product  # MuJoCo's: to import it fails where MUJOCO_GL is wrong
 
     if not turns(log):
         return product(vectors, frame(log).T)

@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from rotctl import documents
 from rotctl.errors import InputError
 from rotctl.log.schema import SCHEMA
 from rotctl.meant import instead
 from rotctl.metrics.operations import FUNCTIONS, LOOKED_UP, power
+from rotctl.settings import documents
 
 LONGEST = 1000  # characters
 MOST_NODES = 200

@@ -17,7 +17,7 @@ from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
 from rotctl.same import kept
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 ROOT = 1  # the character's first body
 HALF = 0.5  # [rev] off the number that is wanted is another number

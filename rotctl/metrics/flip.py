@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.metrics import peaks, standing
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 HOP = 0.1  # [s] without a contact that is no flight
 COLUMNS = (

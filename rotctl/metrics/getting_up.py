@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import standing
 from rotctl.metrics.columns import Arrays, Column, floats
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 COLUMNS = (
     Column("up_from", "On its feet alone, upright and high enough from", "s"),

@@ -42,7 +42,7 @@ from rotctl.metrics.quantile import percentile
 from rotctl.metrics.rolling import RollingCriteria
 from rotctl.metrics.rolling_rules import failure_reason
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.settings import MOST_PARTS, STRICT
+from rotctl.settings.settings import MOST_PARTS, STRICT
 
 Single = Annotated[
     AcrobaticCriteria

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import Arrays, slots_taken
-from rotctl.rotations import Array
 
 
 class Loads(NamedTuple):

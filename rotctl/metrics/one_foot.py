@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.metrics import flip, standing
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.standing import StandingCriteria
-from rotctl.settings import STRICT, Positive
+from rotctl.settings.settings import STRICT, Positive
 
 COLUMNS = (
     Column("turned_alone", "Turned on one foot alone", "deg"),

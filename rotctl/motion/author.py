@@ -10,15 +10,15 @@ from pydantic.dataclasses import dataclass as validated
 from scipy.interpolate import PchipInterpolator
 from scipy.spatial.transform import Rotation
 
-from rotctl import checked
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip, RollAbout
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.turning import Motion, rolled_by, upright
 from rotctl.motion.writing import make_clip
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite, Vector
+from rotctl.settings import checked
+from rotctl.settings.settings import STRICT, Finite, Vector
 
 DENSE = 720  # postures between the key poses, of which AE is measured
 

@@ -16,6 +16,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.capture import (
     MAX_FRAMES,
     MAX_JOINTS,
@@ -26,7 +27,6 @@ from rotctl.motion.capture import (
 )
 from rotctl.motion.naming import find_roles
 from rotctl.motion.untrusted import numbers, text_of
-from rotctl.rotations import Array
 
 _CHANNELS = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in "XYZ")
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 MAX_JOINTS = 500
 MAX_FRAMES = 30_000

@@ -14,13 +14,14 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import checked, documents, files
+from rotctl import files
+from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
-from rotctl.listing import named_file, named_files
+from rotctl.maths.rotations import Array
 from rotctl.meant import instead
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite
+from rotctl.settings import checked, documents
+from rotctl.settings.settings import STRICT, Finite
 
 MAX_SAMPLES = 3600
 MAX_JOINTS = 500

@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.turning import AXIS, Motion, rolled_by
-from rotctl.rotations import Array
 
 DENSE = 360  # postures of the cycle
 LEAST = 0.5  # [rev] that a cycle must turn before it is stretched to one

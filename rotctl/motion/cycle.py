@@ -6,11 +6,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import TurnAbout
 from rotctl.motion.reference import periodic
 from rotctl.motion.turning import AXIS, Motion, pelvis_turn, rotation_between_postures
-from rotctl.rotations import Array
 
 SAMPLES = 72  # of a clip: every 5 degrees of phase
 _LEAST = 1e-4  # [rev] of AE from a posture to the next, so that there is an inverse

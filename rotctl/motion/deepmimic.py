@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl import documents
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.capture import MAX_FRAMES, Y_UP_FACING_X, Capture, assembled
 from rotctl.motion.untrusted import LARGEST, text_of
-from rotctl.rotations import Array
+from rotctl.settings import documents
 
 # Joint: parent, offset from it [m], numbers in a row (4 a quaternion, 1 a hinge, 0 fixed).
 _SKELETON: dict[str, tuple[str, tuple[float, float, float], int]] = {

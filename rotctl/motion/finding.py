@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.clip import TurnAbout
 from rotctl.motion.turning import Motion
-from rotctl.rotations import Array
 
 SPAN = (0.8, 1.15)  # [rev] what passes for one roll: the loop is closed afterwards
 LONGEST = 6.0  # [s]

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.landmarks import BALL
 from rotctl.motion.limbs import Limb, limbs_of
-from rotctl.rotations import Array
 
 UP, LEFT, FORWARD, DOWN = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)
 

@@ -5,9 +5,9 @@ from math import sqrt
 
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.ground import centres, heights
-from rotctl.rotations import Array
 
 GRAVITY = 9.81  # [m/s2]
 ADULT_LEG = 0.86  # [m] the actor's, hip to knee to ankle: no file says how tall he was

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.landmarks import Landmarks
-from rotctl.rotations import Array
 
 # From the file's axis that is up to our z, where the file was read as if y were.
 _TO_Z = {

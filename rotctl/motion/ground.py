@@ -4,10 +4,10 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
 from rotctl.motion.turning import Motion, qpos
-from rotctl.rotations import Array
 
 
 def rolled(model: Model, motion: Motion, heading: float = 0.0) -> Array:

@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.capture import Capture
 from rotctl.motion.clip import Clip
@@ -26,7 +27,6 @@ from rotctl.motion.reading import NOTHING, Wishes
 from rotctl.motion.retarget import Retargeted, retarget
 from rotctl.motion.turning import Motion, qpos, rotation_between_postures
 from rotctl.motion.writing import make_clip
-from rotctl.rotations import Array
 
 LONGEST = 60.0  # [s] of capture that are fitted
 FEWEST = 5  # frames of a cycle

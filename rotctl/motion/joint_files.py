@@ -16,11 +16,11 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.foreign import skeleton
 from rotctl.motion.capture import MAX_FRAMES, Capture, Joint, bounded
 from rotctl.motion.smpl import rate_of
 from rotctl.motion.untrusted import Arrays, arrays_of, numbers, text_of
-from rotctl.rotations import Array
 
 CSV_RATE = 30.0  # [Hz] of the LAFAN1 motions on robots; the files do not say
 FITS = 0.05  # [m] between bodies where the file and where the joints have them

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.capture import Capture, Joint
 from rotctl.motion.naming import SIDES, find_roles
-from rotctl.rotations import Array
 
 BALL = (0.87, 0.0, -0.49)  # of the foot, from the ankle, in the foot's frame
 PART_OF_SPINE = 0.02  # [legs] a joint nearer to the hips says nothing on where they point

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 LIMBS = tuple(f"{upper}_{side}" for upper in ("upper_arm", "thigh") for side in "lr")
 LEVELS = (9, 7, 7, 6)  # of each joint's range, from the trunk on

@@ -3,10 +3,10 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.sides import other_side, sign_of
 from rotctl.motion.turning import Motion
-from rotctl.rotations import Array
 
 _IN_MIRROR = np.array([1.0, -1.0, 1.0, -1.0])  # of w, x, y, z: a turn is a pseudo-vector
 

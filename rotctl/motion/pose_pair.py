@@ -16,11 +16,11 @@ from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.native.layout import constant
-from rotctl.rotations import Array
 from rotctl.same import kept
-from rotctl.settings import STRICT, Finite
+from rotctl.settings.settings import STRICT, Finite
 
 ROUNDING = 1e-6  # [rad] of a limit that somebody copied
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far

@@ -6,12 +6,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
 from rotctl.motion.cycle import at_places
 from rotctl.motion.ground import rolled
 from rotctl.motion.turning import Motion, rolled_by, upright
-from rotctl.rotations import Array
 
 MAX_FRAMES = 200
 STEPS = 12  # postures rolled through from one that is shown to the next

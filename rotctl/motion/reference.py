@@ -14,11 +14,11 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite, NonNegative
+from rotctl.settings.settings import STRICT, Finite, NonNegative
 
 STEPS = 720  # of the table that `at` reads: half a degree of phase
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.fit import FORWARD, GAIN, LEFT, SEGMENTS, TO_PREVIOUS, UP, Fit, unit
 from rotctl.motion.landmarks import Landmarks
 from rotctl.motion.limbs import Limb
 from rotctl.motion.turning import Motion
-from rotctl.rotations import Array
 
 STUCK = np.radians(2.0)  # an error of a limb from which other starts are tried
 RETRY = 5  # frames, after starts that brought nothing, and twice as many each time that they do:

@@ -12,9 +12,9 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.motion.capture import MAX_FRAMES, Capture, assembled, bounded
 from rotctl.motion.untrusted import Arrays, arrays_of
-from rotctl.rotations import Array
 
 # Joint: parent, offset from it [m], x left, y up, z forward.
 _SKELETON: dict[str, tuple[str, tuple[float, float, float]]] = {

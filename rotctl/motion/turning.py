@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
 from rotctl.motion.clip import TurnAbout
-from rotctl.rotations import Array
 
 AXIS = np.array([0.0, 1.0, 0.0])  # every roll is about world +y, to +x
 # Columns are the pelvis's forward, left and up at phase 0, in the world.

@@ -11,7 +11,7 @@ import numpy as np
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 MAX_BYTES = 32_000_000  # minutes of capture
 MAX_ARCHIVE = 100_000_000  # of arrays, packed

@@ -1,4 +1,4 @@
-// rotations.py on plain numbers: quaternions are (w, x, y, z), every sum in Python's order.
+// maths/rotations.py on plain numbers: quaternions are (w, x, y, z), every sum in Python's order.
 #ifndef ROTCTL_ROTATIONS_H
 #define ROTCTL_ROTATIONS_H
 

@@ -11,10 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from rotctl.linear import NotPositiveDefiniteError, product, solve
+from rotctl.maths.linear import NotPositiveDefiniteError, product, solve
+from rotctl.maths.rotations import Array
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.qp.scaling import DIAGONAL, Scaled, scale
-from rotctl.rotations import Array
 
 STEPS = 30  # allowed, per variable
 WRONG = 1e-9  # a multiplier this far on the wrong side is rounding, relative to the largest |f|

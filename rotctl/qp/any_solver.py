@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
-from rotctl.rotations import Array
 
 TOLERANCE = 1e-5  # accepted relative residual [-]
 LARGEST = 1e20  # a bound beyond this is none

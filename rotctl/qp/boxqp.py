@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
 from rotctl.qp.scaling import DIAGONAL, TOLERANCE, natural_residual, scale
-from rotctl.rotations import Array
 
 
 class BoxQP:

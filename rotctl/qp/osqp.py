@@ -12,8 +12,8 @@ import numpy as np
 import osqp
 import scipy.sparse as sparse
 
+from rotctl.maths.rotations import Array
 from rotctl.qp.problem import Problem, Shape, Solution, failed, objection
-from rotctl.rotations import Array
 
 EPSILON = 1e-5  # absolute and relative tolerance of the scaled problem [-]
 LARGEST = 1e20  # OSQP's infinity is 1e30; a bound beyond this is none

@@ -5,8 +5,8 @@ from typing import Literal, Protocol
 
 import numpy as np
 
-from rotctl.linear import product
-from rotctl.rotations import Array
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 
 Shape = Literal["bounds", "rows"]
 

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.qp.problem import Problem, Solution
-from rotctl.rotations import Array
 
 # Added to the unit diagonal of the scaled Hessian. Four generators span a contact's three
 # force components, so the Hessian has a null space along which the force does not change;

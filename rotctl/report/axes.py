@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import in_frame
 from rotctl.report.signals import Rates, Signals, torque_fractions
 from rotctl.report.timeline import Bar
-from rotctl.rotations import Array
 
 # Okabe and Ito's colours, which the colour-blind can tell apart too.
 BLUE, ORANGE, GREEN = "#0072B2", "#D55E00", "#009E73"

@@ -5,7 +5,7 @@ from math import radians, tan
 
 import numpy as np
 
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 FIELD_OF_VIEW = radians(24.0)  # vertical; narrow, so that limbs keep their lengths
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 if TYPE_CHECKING:
     import mujoco

@@ -11,6 +11,7 @@ from PIL import Image
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import heading
 from rotctl.metrics.halts import going
 from rotctl.metrics.turning import longest_stall
@@ -24,7 +25,6 @@ from rotctl.report.skill import BEFORE, Part, first_push, parts
 from rotctl.report.spacing import even, spread
 from rotctl.report.stage_names import stages_of_parts
 from rotctl.report.title import verdict
-from rotctl.rotations import Array
 
 MAX_FRAMES = 200
 OVERSAMPLING = 2  # frames are drawn this much larger: smooth edges without multisampling

@@ -8,11 +8,11 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import Arrays, in_frame
 from rotctl.report.character import FORCE_SCALE
 from rotctl.report.happenings import happenings
 from rotctl.report.stage_names import stage_names, stages_of_parts
-from rotctl.rotations import Array
 
 if TYPE_CHECKING:
     from rotctl.report.camera import Camera

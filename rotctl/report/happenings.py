@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from rotctl.documents import from_yaml
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.plain import NOTHING, find
 from rotctl.report.title import plain
+from rotctl.settings.documents import from_yaml
+from rotctl.settings.plain import NOTHING, find
 
 # What `rotctl.mechanics.changes` tells; other events are of solvers.
 _CHANGES = re.compile(r"\S+ takes up \S+ kg|the ground has \S+ of its friction")

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.report.camera import FIELD_OF_VIEW, View
-from rotctl.rotations import Array
 
 SKY_TOP = (0.655, 0.780, 0.900)
 SKY_LOW = (0.945, 0.962, 0.975)

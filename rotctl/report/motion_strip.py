@@ -7,11 +7,11 @@ import numpy as np
 from PIL import Image, ImageDraw
 
 from rotctl import files
+from rotctl.maths.rotations import Array
 from rotctl.report import gl
 from rotctl.report.filmstrip import MAX_COLUMNS, OVERSAMPLING, write
 from rotctl.report.frame import INK, PAPER, SOFT, Moment, draw, typeface
 from rotctl.report.sheet import FRAME
-from rotctl.rotations import Array
 
 _MARGIN, _GAP, _CAPTION, _HEADER = 22, 10, 30, 84  # pixels
 _NO_CONTACTS = (np.empty((0, 3)), np.empty((0, 3)), np.empty(0, dtype=bool))

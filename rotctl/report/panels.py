@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.report.signals import Signals
-from rotctl.rotations import Array
 
 Panel = dict[str, Any]
 _ROOM = 0.06  # of the range above and below

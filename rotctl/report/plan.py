@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import floats, nearest_places, turns
 from rotctl.report import axes as draw
 from rotctl.report.frame import turns_done
 from rotctl.report.plot import heading, write
-from rotctl.rotations import Array
 
 SIZE = (6.4, 6.0)  # [inch]
 ACROSS = 0.5  # [m] of the line that shows how the trunk lies; shoulders are so wide

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.skeleton import ROUND
 from rotctl.report import axes as draw
 from rotctl.report import stored_model
 from rotctl.report.plot import heading, write
 from rotctl.report.shapes import triangles
-from rotctl.rotations import Array
 
 if TYPE_CHECKING:
     import mujoco

@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.report import character, shapes, stored_model
 from rotctl.report.panels import panels
 from rotctl.report.rows import at_rate, drawable, moderate
 from rotctl.report.signals import Signals, signals
-from rotctl.rotations import Array
 
 RATE = 30.0  # [1/s] frames; the page draws between them
 MAX_FRAMES = 9000  # 5 min; longer runs get fewer frames a second

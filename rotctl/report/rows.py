@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 
 MAX_POSITION = 1e5  # [m, rad] a run that broke down is shown until there
 MAX_TIME = 1e5  # [s] no run is as long

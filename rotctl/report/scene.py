@@ -12,9 +12,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.maths.rotations import Array
 from rotctl.report import character, gl, light, shapes
 from rotctl.report.camera import ABOVE, AHEAD, FIELD_OF_VIEW, FLAT, LONG, SIDE, Camera, View
-from rotctl.rotations import Array
 
 Pixels = NDArray[np.uint8]
 

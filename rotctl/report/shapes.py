@@ -6,8 +6,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.report import character
-from rotctl.rotations import Array
 
 LEFT_SHADE = 0.62  # left limbs are darker, so that turns can be told apart
 _DOWN = np.array([0.0, 0.0, -1.0])

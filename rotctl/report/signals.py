@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import along_frame, in_frame
 from rotctl.metrics.finish import begins
 from rotctl.report.title import plain
-from rotctl.rotations import Array
 
 TURN = 2.0 * math.pi  # [rad]
 

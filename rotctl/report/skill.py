@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.metrics.chain import again, spans
 from rotctl.metrics.columns import Arrays, floats
 from rotctl.metrics.dive import entry
 from rotctl.metrics.flip import longest_flight
 from rotctl.report.frame import turns_done
-from rotctl.rotations import Array
 
 FLIGHT = 0.2  # [s] from so long on it is one, not a hop
 BEFORE = 0.5  # [s] of the crouch before a take-off, of the rest before anything else

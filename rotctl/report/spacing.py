@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import Arrays, floats
 from rotctl.report.skill import Part
-from rotctl.rotations import Array
 
 CLOSEST = 1 / 30  # of a part's rows are between two frames at least
 CROWDED = 0.4  # and of the mean distance, where so many frames are wanted that this is less

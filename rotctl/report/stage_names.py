@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from rotctl.documents import from_yaml
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.plain import NOTHING, find
 from rotctl.report.title import plain
+from rotctl.settings.documents import from_yaml
+from rotctl.settings.plain import NOTHING, find
 
 LONGEST = 20  # characters of a stage's name
 

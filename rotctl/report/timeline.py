@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.report.title import plain
-from rotctl.rotations import Array
 
 if TYPE_CHECKING:
     import mujoco

@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 
 from rotctl import files
 from rotctl.log import RunLog
+from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import heading
 from rotctl.report import encoder, gl, stored_model
 from rotctl.report.frame import (
@@ -27,7 +28,6 @@ from rotctl.report.rows import at_rate, drawable, window
 from rotctl.report.skill import parts
 from rotctl.report.stage_names import stages_of_parts
 from rotctl.report.title import Title, title
-from rotctl.rotations import Array
 
 RATE = 30.0  # [frames/s] of simulated time, which the video shows as fast as it was
 FRAME = (640, 400)  # pixels of the picture

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from rotctl.documents import from_json
 from rotctl.errors import LogError
 from rotctl.same import kept
+from rotctl.settings.documents import from_json
 
 
 def code_version(attributes: Mapping[str, Any]) -> str:

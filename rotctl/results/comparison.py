@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rotctl import plain
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.results.configs import config_of
@@ -14,6 +13,7 @@ from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at
 from rotctl.results.stored_runs import DONE, stored_runs
 from rotctl.results.table import tabulated
+from rotctl.settings import plain
 
 _NOT_FIGURES = ("run_id", "real_time_factor", "wall_time")
 _VARIES = "(varies)"

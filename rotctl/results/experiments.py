@@ -9,12 +9,13 @@ from pathlib import Path
 
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import checked, documents, files
+from rotctl import files
+from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
-from rotctl.listing import named_file, named_files
 from rotctl.meant import instead
 from rotctl.metrics.claims import Claim, Where
-from rotctl.settings import STRICT
+from rotctl.settings import checked, documents
+from rotctl.settings.settings import STRICT
 
 PREFIX = "+experiment="
 COPY = "experiment-{}.yaml"

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from rotctl.plain import NOTHING, find, way
+from rotctl.settings.plain import NOTHING, find, way
 
 
 def name_of(value: Any) -> str | None:

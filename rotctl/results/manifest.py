@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import files
-from rotctl.documents import read_json_lines
 from rotctl.errors import InputError
+from rotctl.settings.documents import read_json_lines
 
 MANIFEST_NAME = "sweep.jsonl"
 

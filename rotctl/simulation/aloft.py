@@ -8,11 +8,11 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import similar
-from rotctl.linear import solve
+from rotctl.maths.linear import solve
+from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.rotations import Array, quaternion_from_rotation_vector
-from rotctl.settings import STRICT, Finite, Fraction, Positive, Range
+from rotctl.settings.settings import STRICT, Finite, Fraction, Positive, Range
 
 
 @validated(frozen=True, config=STRICT)

@@ -13,12 +13,12 @@ import mujoco
 from rotctl.behaviours.behaviour import Behaviour, Signals
 from rotctl.control import Command, Controller, Decision
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.disturbance import Disturbance
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.plant import Motors, Senses
 from rotctl.mechanics.state import State
 from rotctl.mechanics.terrain import Ground
-from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces
 from rotctl.simulation.start import Start, beginning, place
 from rotctl.simulation.stepping import Stepper

@@ -8,11 +8,11 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import similar
 from rotctl.behaviours.landing import Contact, Landing, LandingSettings
-from rotctl.linear import solve
+from rotctl.maths.linear import solve
+from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.rotations import Array, quaternion_from_rotation_vector
-from rotctl.settings import STRICT, NonNegative, Range
+from rotctl.settings.settings import STRICT, NonNegative, Range
 
 SLOWEST = 0.1  # [m/s] down, for a landing
 

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import RotctlError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts, read_contacts, realised_forces
 from rotctl.native import library
 from rotctl.native.layout import constant, structure
-from rotctl.rotations import Array
 
 SLOTS = constant("SLOTS")  # what a log row can hold at most
 

@@ -8,8 +8,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.rotations import Array, dotted, length
-from rotctl.settings import SPARSE, STRICT, Finite, Positive, Vector
+from rotctl.maths.rotations import Array, dotted, length
+from rotctl.settings.settings import SPARSE, STRICT, Finite, Positive, Vector
 
 LEAST = 1e-3  # [-] of a quaternion's length, below which nobody knows what it is
 

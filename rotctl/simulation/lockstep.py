@@ -16,13 +16,13 @@ overstepped is taken back a little, t = min(fastest, correction (depth - slop) /
 import mujoco
 import numpy as np
 
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.pair_limit import crowded
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.native.library import NOT_BUILT, library
-from rotctl.rotations import Array
 from rotctl.simulation import pgs
 from rotctl.simulation.ground_forces import GroundForces, ground_forces
 from rotctl.simulation.pgs import Impulses, Rows, Solve

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import RotctlError
+from rotctl.maths.rotations import Array
 from rotctl.native import library
-from rotctl.rotations import Array
 
 NO_NORMAL = -1
 

@@ -11,11 +11,11 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Behaviour, Placement
 from rotctl.errors import InputError
-from rotctl.linear import product
+from rotctl.maths.linear import product
+from rotctl.maths.rotations import Array, advance, cross, dot
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
-from rotctl.rotations import Array, advance, cross, dot
-from rotctl.settings import SPARSE, STRICT, Finite, NonNegative, Range
+from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Range
 from rotctl.simulation import aloft as spawned
 from rotctl.simulation import falling as falls
 from rotctl.simulation.aloft import AloftSettings

@@ -9,11 +9,11 @@ from typing import Protocol
 import mujoco
 import numpy as np
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.pair_limit import crowded
 from rotctl.native.library import library
-from rotctl.rotations import Array
 from rotctl.simulation.ground_forces import GroundForces, ground_forces
 
 WARNINGS = {

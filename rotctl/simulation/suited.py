@@ -1,6 +1,6 @@
 """Which starts suit a roll, for messages about one that does not."""
 
-from rotctl.listing import content, shipped_files
+from rotctl.choices.listing import content, shipped_files
 
 
 def suited(roll_about: str) -> str:

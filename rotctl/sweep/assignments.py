@@ -7,9 +7,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from rotctl import plain
-from rotctl.choosing import simple
-from rotctl.listing import choices
+from rotctl.choices.choosing import simple
+from rotctl.choices.listing import choices
+from rotctl.settings import plain
 
 MOST_POINTS = 100_000
 _RANGE = re.compile(r"range\((-?[0-9]{1,9}),(-?[0-9]{1,9})\)")

@@ -3,16 +3,16 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.judge import COLUMNS
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
-from rotctl.schema import Config
+from rotctl.settings.written import to_dict
 from rotctl.sweep.plan import Planned
 from rotctl.sweep.points import points
-from rotctl.written import to_dict
 
 # Of the summary row of every run, beside what its kind of motion has.
 _ALWAYS = ("duration", "torque_p99_fraction", "solver_failures", "real_time_factor")

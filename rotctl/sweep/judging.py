@@ -8,18 +8,18 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rotctl.checked import unknown_key
-from rotctl.config import composed
+from rotctl.choices.overrides import assigned, single
+from rotctl.config.config import composed
+from rotctl.config.schema import Config, check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.evaluation import evaluate
 from rotctl.metrics.expression import Expression
-from rotctl.overrides import assigned, single
-from rotctl.plain import NOTHING, Way, exchanged, way
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import TAKEN, Table, tabulated
-from rotctl.schema import Config, check
-from rotctl.summary import Summary, judged_again
+from rotctl.runs.summary import Summary, judged_again
+from rotctl.settings.checked import unknown_key
+from rotctl.settings.plain import NOTHING, Way, exchanged, way
 from rotctl.sweep.engines import Engine, Failure
 
 NOT_JUDGED = "not judged"

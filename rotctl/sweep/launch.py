@@ -17,13 +17,13 @@ from rotctl.results import manifest
 from rotctl.results.index import ORIGIN, Row, stamp
 from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry
-from rotctl.run_folder import EncodedRun, publish
-from rotctl.summary import Summary, broke_down
+from rotctl.runs.run_folder import EncodedRun, publish
+from rotctl.runs.summary import Summary, broke_down
+from rotctl.settings.written import to_dict
 from rotctl.sweep import groups
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned
 from rotctl.sweep.task import ordered
-from rotctl.written import to_dict
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
 from rotctl.results import index
-from rotctl.run import make
-from rotctl.schema import Config
+from rotctl.runs.run import make
 from rotctl.sweep.keep import NEVER, Keep
 from rotctl.sweep.launch import Tally
 from rotctl.sweep.plan import Plan, Planned, suffices

@@ -7,18 +7,18 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import same
+from rotctl.config.identity import identity, model_hash
+from rotctl.config.schema import Config
 from rotctl.errors import InputError, LogError
-from rotctl.identity import identity, model_hash
 from rotctl.log import LOG_NAME, RunLog, collect
 from rotctl.results import index
 from rotctl.results.code import code_of, code_version
 from rotctl.results.configs import config_of
 from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
-from rotctl.run import by_other_criteria, same_criteria
-from rotctl.run_folder import has_all_beside, open_published, publish
-from rotctl.scenario import model_from, model_parts
-from rotctl.schema import Config
-from rotctl.summary import Summary
+from rotctl.runs.run import by_other_criteria, same_criteria
+from rotctl.runs.run_folder import has_all_beside, open_published, publish
+from rotctl.runs.scenario import model_from, model_parts
+from rotctl.runs.summary import Summary
 from rotctl.sweep.assignments import MOST_POINTS
 from rotctl.sweep.keep import Keep, kept
 from rotctl.sweep.points import Point

@@ -11,16 +11,17 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from rotctl import labels, plain
 from rotctl.behaviours.chain_settings import ChainSettings
-from rotctl.choosing import package
-from rotctl.config import load
+from rotctl.choices import labels
+from rotctl.choices.choosing import package
+from rotctl.choices.listing import choices
+from rotctl.config.config import load
+from rotctl.config.schema import Config, changed
 from rotctl.errors import InputError
-from rotctl.listing import choices
 from rotctl.results.keys import value_at
-from rotctl.schema import Config, changed
+from rotctl.settings import plain
+from rotctl.settings.written import to_dict
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
-from rotctl.written import to_dict
 
 PARTS = "behaviour.parts"  # of a chain, which are composed themselves
 TAKEN = ("controller.", "excursion.")  # of a run, by parts of a chain without their own

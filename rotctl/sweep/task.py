@@ -11,13 +11,13 @@ from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from rotctl.encoding import encoded
+from rotctl.config.schema import Config
 from rotctl.log import TrajectoryBuffer
-from rotctl.run import built, in_memory
-from rotctl.run_folder import EncodedRun
+from rotctl.runs.encoding import encoded
+from rotctl.runs.run import built, in_memory
+from rotctl.runs.run_folder import EncodedRun
+from rotctl.runs.scenario import Scenario, shared
 from rotctl.same import kept
-from rotctl.scenario import Scenario, shared
-from rotctl.schema import Config
 from rotctl.sweep import keep
 from rotctl.sweep.engines import Failure, carried_out
 

@@ -8,10 +8,10 @@ from typing import Any
 from hydra.core.override_parser.types import Glob, Override, OverrideType, RangeSweep, Transformer
 from hydra.errors import HydraException
 
-from rotctl import plain
+from rotctl.choices.listing import choices
+from rotctl.choices.overrides import parsed
 from rotctl.errors import InputError
-from rotctl.listing import choices
-from rotctl.overrides import parsed
+from rotctl.settings import plain
 from rotctl.sweep.assignments import MOST_POINTS, Assignment
 
 

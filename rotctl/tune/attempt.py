@@ -4,17 +4,17 @@ from dataclasses import dataclass
 from math import acos, degrees, isnan, nan, pi
 
 from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
+from rotctl.maths.rotations import dot
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.evaluation import evaluate
 from rotctl.metrics.expression import Expression
 from rotctl.metrics.judge import judge
 from rotctl.metrics.rolling import RollingCriteria
-from rotctl.rotations import dot
-from rotctl.run import in_memory
-from rotctl.scenario import build
-from rotctl.schema import Config
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.simulation.loop import Look
 from rotctl.tune.objective import TrialRun
 from rotctl.tune.space import Stopping

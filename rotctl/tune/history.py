@@ -16,9 +16,9 @@ from urllib.parse import quote
 from pydantic import Field
 
 from rotctl import files
-from rotctl.checked import checked
 from rotctl.errors import InputError
-from rotctl.settings import Finite, Fraction
+from rotctl.settings.checked import checked
+from rotctl.settings.settings import Finite, Fraction
 from rotctl.tune.sampler import distributions
 from rotctl.tune.space import Space
 from rotctl.tune.values import Values

@@ -7,11 +7,11 @@ from typing import Any
 import yaml
 
 from rotctl import files
-from rotctl.choosing import SELF
-from rotctl.listing import choices as choices_of
-from rotctl.listing import conf_dir, content, named_file, own_dir, usual
+from rotctl.choices.choosing import SELF
+from rotctl.choices.listing import choices as choices_of
+from rotctl.choices.listing import conf_dir, content, named_file, own_dir, usual
 from rotctl.log import collect
-from rotctl.plain import way
+from rotctl.settings.plain import way
 from rotctl.tune.chart import plot, table
 from rotctl.tune.choice import Candidate
 from rotctl.tune.objective import finished

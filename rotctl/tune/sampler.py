@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rotctl.errors import InputError
-from rotctl.rotations import Array
+from rotctl.maths.rotations import Array
 from rotctl.tune.space import Parameter, Space
 from rotctl.tune.values import Values
 

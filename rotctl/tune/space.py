@@ -9,13 +9,13 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl import documents
-from rotctl.checked import checked
+from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
-from rotctl.listing import named_file, named_files
 from rotctl.meant import instead
 from rotctl.metrics import appearance, expression, pace, rolling
-from rotctl.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings import documents
+from rotctl.settings.checked import checked
+from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
 from rotctl.tune.key_braces import MOST, expanded
 
 ROLLING = tuple(c.name for kind in (rolling, appearance, pace) for c in kind.COLUMNS)

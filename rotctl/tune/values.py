@@ -3,14 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rotctl import plain
-from rotctl.config import load
+from rotctl.config.config import load
+from rotctl.config.schema import Config, changed, check
 from rotctl.errors import InputError
-from rotctl.plain import NOTHING, dotted, member, way
 from rotctl.same import kept
-from rotctl.schema import Config, changed, check
+from rotctl.settings import plain
+from rotctl.settings.plain import NOTHING, dotted, member, way
+from rotctl.settings.written import to_dict
 from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
-from rotctl.written import to_dict
 
 Values = dict[str, float]  # key -> value, in the order of the space
 BLOCK = 1_000_000  # training seeds of one search

@@ -26,8 +26,8 @@ def command(case):
     """What the child calls: the command, with what would take long cut short."""
 
     def call():
-        from rotctl import listing
-        from rotctl.cli import main
+        from rotctl.choices import listing
+        from rotctl.cli.cli import main
         from rotctl.report.site import build
         from rotctl.sweep import cluster, workers
 
@@ -42,7 +42,7 @@ def command(case):
 
         workers.make_engine = chosen
         if case.conf:
-            listing.__file__ = str(case.conf.parent / "package" / "listing.py")
+            listing.__file__ = str(case.conf.parent / "package" / "choices" / "listing.py")
         if case.simulates:
             signal.signal(signal.SIGPROF, signal.default_int_handler)
             signal.setitimer(signal.ITIMER_PROF, PATIENCE)

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from rotctl import listing
-from rotctl.config import load
+from rotctl.choices import listing
+from rotctl.config.config import load
 from rotctl.log import RunLog, write_run
 from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
-from rotctl.written import to_dict
+from rotctl.settings.written import to_dict
 
 OVERRIDES = ["seed=range(0,2)", "duration=0.1", "--quiet"]
 SPACE = """\

@@ -6,7 +6,7 @@ import yaml
 
 from fuzz.case import Case, other
 from fuzz.nasty import changed, dumped, mangled
-from rotctl import listing
+from rotctl.choices import listing
 
 
 def space(rng, samples, here):

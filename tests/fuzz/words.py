@@ -5,8 +5,8 @@ import shutil
 
 from fuzz.case import Case
 from fuzz.nasty import NUMBERS, text, value
-from rotctl import listing
-from rotctl.plain import dotted, leaves
+from rotctl.choices import listing
+from rotctl.settings.plain import dotted, leaves
 
 
 def overrides(rng, samples, here):

@@ -7,8 +7,8 @@ from typing import Annotated, Protocol
 import mujoco
 from pydantic import Field
 
-from rotctl.rotations import Array
-from rotctl.settings import Positive
+from rotctl.maths.rotations import Array
+from rotctl.settings.settings import Positive
 
 Friction = Annotated[Positive, Field(le=10)]  # sliding friction of ground and character [-]
 

@@ -13,6 +13,7 @@ from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import (
     BEHIND,
     CHARACTER_CONTACT,
@@ -24,8 +25,7 @@ from rotctl.mechanics.terrain.ground import (
     add_geom,
 )
 from rotctl.mechanics.terrain.plane import Plane
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, NonNegative, Positive, Range
+from rotctl.settings.settings import STRICT, NonNegative, Positive, Range
 
 FLOOR_PART = 0.05  # [m] of a bar that is below the ground
 MOST_THINGS = 18_000  # an hour of one every 60 cm

@@ -9,9 +9,9 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import EVERYWHERE, Extent, Friction, add_geom
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, Finite
+from rotctl.settings.settings import STRICT, Finite
 
 
 @validated(frozen=True, config=STRICT)

@@ -10,6 +10,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import (
     BEHIND,
     FLOOR_DEPTH,
@@ -18,8 +19,7 @@ from rotctl.mechanics.terrain.ground import (
     Friction,
     add_geom,
 )
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 MOST_STEPS = 18_000  # an hour of treads of 60 cm; they take 0.7 s to build and 0.1 GB
 

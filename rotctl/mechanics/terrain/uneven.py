@@ -15,6 +15,7 @@ import numpy as np
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import (
     BEHIND,
     FLOOR_DEPTH,
@@ -23,8 +24,7 @@ from rotctl.mechanics.terrain.ground import (
     Friction,
     add_geom,
 )
-from rotctl.rotations import Array
-from rotctl.settings import STRICT, NonNegative, Positive
+from rotctl.settings.settings import STRICT, NonNegative, Positive
 
 LENGTH = 66.0  # [m] of a field: with what is behind the start, 20 s at the fastest
 CELL = 0.15  # [m] between heights; finer ones would give the engine more contacts than it keeps

@@ -8,6 +8,7 @@ from itertools import islice
 
 from hydra.core.override_parser.types import ChoiceSweep, RangeSweep
 
+from rotctl.choices.overrides import parsed
 from rotctl.errors import InputError
 from rotctl.metrics.claims import (
     NOT_REPRODUCED,
@@ -19,7 +20,6 @@ from rotctl.metrics.claims import (
     Judged,
     overall,
 )
-from rotctl.overrides import parsed
 from rotctl.report.site.rows import Row, rows
 from rotctl.report.site.words import quantity
 from rotctl.results.experiments import Experiment

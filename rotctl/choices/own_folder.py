@@ -1,0 +1,79 @@
+"""A file of one's own, begun as a copy of one that there is."""
+
+import re
+from pathlib import Path
+
+from rotctl import __version__, files
+from rotctl.choices.listing import (
+    MARK,
+    groups,
+    is_shipped,
+    is_word_of_yaml,
+    named_file,
+    named_files,
+    own_dir,
+)
+from rotctl.errors import InputError
+from rotctl.meant import instead
+from rotctl.settings import documents
+
+MARKED = """\
+# Your own configs for rotctl: behaviour/, character/, terrain/, start/, ..., clips in motion/,
+# search spaces in tune/, experiments in experiments/. rotctl takes this folder, ./conf, by itself
+# because this file is in it, and any other by --config-dir. Nothing in it is executed.
+"""
+_NO_GROUPS = ("motion", "tune", "experiments")
+_NAME = re.compile(r"^name: .*$", re.MULTILINE)
+
+
+def kinds() -> list[str]:
+    """The folders that a file of one's own may be in."""
+    return [*groups(), *_NO_GROUPS]
+
+
+def make(kind: str, name: str, source: str) -> Path:
+    """Copy a choice, with its comments, under another name into the user's folder.
+
+    Args:
+        kind: one of `kinds()`.
+        source: the choice that is copied, rotctl's or the user's.
+
+    Raises:
+        InputError: there is no such choice, or one of that name already; nothing is written.
+    """
+    path, there = free(kind, name), named_files(kind)
+    if source not in there:
+        what = "start or run" if kind == "start" else kind
+        raise InputError(f"--from={source}: no such {what}; {instead(source, there)}")
+    text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
+    text = _NAME.sub(f"name: {name}", text, count=1)
+    copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"
+    return write(path, text if text.startswith("# @") else copied + text)
+
+
+def free(kind: str, name: str) -> Path:
+    """Where a file of that name goes in the user's folder.
+
+    Raises:
+        InputError: there is one of that name already, or it can be none.
+    """
+    if kind not in kinds():
+        raise InputError(f"{kind}: no such kind of file; {instead(kind, kinds())}")
+    if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
+        raise InputError(f"{name}: must be letters, digits and _, a letter first")
+    if is_word_of_yaml(name):
+        raise InputError(f"{name}: YAML takes it for something else; give another name")
+    there = named_files(kind)
+    if name in there:
+        raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
+    return (own_dir() or Path("conf")) / kind / f"{name}.yaml"
+
+
+def write(path: Path, text: str) -> Path:
+    """Write a file of the user's folder, which is marked as one."""
+    folder = path.parent.parent
+    with files.folder(path.parent, linked=True):
+        if own_dir() is None and not is_shipped(folder) and not (folder / MARK).exists():
+            files.replace(folder / MARK, MARKED.encode())
+        files.replace(path, text.encode())
+    return path

@@ -1,0 +1,88 @@
+"""The command line: errors, signals and broken pipes become one line and an exit code."""
+
+import atexit
+import gc
+import io
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import NoReturn
+
+from rotctl.cli.parser import parse
+from rotctl.cli.wording import one_line
+from rotctl.errors import RotctlError
+from rotctl.report import gl
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    # One BLAS thread, whatever the user's shell says: matrices are small, runs in parallel are
+    # worth more, and more threads add up in another order.
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ[name] = "1"
+    # To look through all that is imported for garbage, again and again and once more at the end,
+    # takes a fifth of a short run.
+    gc.set_threshold(200_000)
+    atexit.register(gc.freeze)
+    # What other packages hook into the checks of settings is searched for, and acts on none here.
+    os.environ["PYDANTIC_DISABLE_PLUGINS"] = "__all__"
+    if not sys.warnoptions:  # of libraries, with lines of their sources
+        warnings.simplefilter("ignore")
+        os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of workers
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
+    arguments = parse(argv)
+    from rotctl.choices.listing import own  # reads YAML: who asks for help need not wait for it
+    from rotctl.choices.override_files import blamed, expanded
+
+    try:
+        if "overrides" in arguments:
+            arguments.overrides = expanded(arguments.overrides)
+        gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
+        with _terminated_like_interrupted(), own(arguments.config_dir):
+            code = int(arguments.command(arguments))
+            if sys.stdout:  # None where the shell has closed it
+                sys.stdout.flush()
+            return code
+    except RotctlError as error:
+        complaint = blamed(getattr(arguments, "overrides", ()), str(error))
+        print(f"rotctl: {one_line(complaint)}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print(f"rotctl: interrupted; {arguments.interrupted}", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # whoever read our output has seen enough
+        _drop_stdout()
+        return 0
+    except OSError as error:
+        _drop_stdout()
+        what = f"{error.filename or 'output'}: {error.strerror or error}"
+        print(f"rotctl: {one_line(what)}", file=sys.stderr)
+        return 2
+
+
+@contextmanager
+def _terminated_like_interrupted() -> Iterator[None]:
+    """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does."""
+
+    def interrupt(signum: int, frame: object) -> NoReturn:
+        raise KeyboardInterrupt
+
+    try:
+        before = signal.signal(signal.SIGTERM, interrupt)
+    except ValueError:  # not the main thread, which alone gets signals
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _drop_stdout() -> None:
+    """Keep the interpreter from flushing to a closed or full stdout once more."""
+    with suppress(OSError, AttributeError):  # it is no file, or None
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

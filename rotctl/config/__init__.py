@@ -1,0 +1,1 @@
+"""Configs: what determines a run, checked as a whole."""

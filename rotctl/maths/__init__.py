@@ -1,0 +1,1 @@
+"""Rotations and linear algebra, to the same bits on every machine."""

@@ -1,0 +1,91 @@
+"""A run's summary row: what it was, whether it succeeded, and its measures."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.config.fit import require_fit
+from rotctl.config.schema import Config
+from rotctl.log import RunLog, TrajectoryBuffer
+from rotctl.mechanics.disturbance import Calm
+from rotctl.mechanics.model import Model
+from rotctl.metrics import disturbed
+from rotctl.metrics.chain import Link
+from rotctl.metrics.columns import Arrays
+from rotctl.metrics.judge import judge
+from rotctl.runs.scenario import Scenario, model_of
+
+Summary = dict[str, Any]
+BROKE_DOWN, LEFT = "physics", "left the ground"  # how reasons begin that no criteria give
+
+
+def summarise(
+    scenario: Scenario, run: TrajectoryBuffer | Arrays, ending: str, wall: float
+) -> Summary:
+    """The summary row of a simulated run.
+
+    Args:
+        run: the buffer, or schema path -> array.
+        ending: what ended it early; empty if nothing did.
+        wall: the time the loop took [s].
+    """
+    log = run.arrays() if isinstance(run, TrajectoryBuffer) else run
+    return _judged(scenario.config, scenario.run_id, scenario.model, log, ending, wall)
+
+
+def judged_again(log: RunLog, config: Config) -> Summary:
+    """The summary row of a logged run by the criteria of a config that is its own otherwise.
+
+    Raises:
+        LogError: the log is damaged.
+        InputError: such criteria do not judge such a run.
+    """
+    model = model_of(config)
+    require_fit(config, model)
+    reason = str(log.outcome["failure_reason"])
+    ending = reason if reason.startswith((BROKE_DOWN, LEFT)) else ""
+    wall = float(log.attributes["wall_time"])
+    arrays = log.arrays()
+    return _judged(config, str(log.attributes["run_id"]), model, arrays, ending, wall)
+
+
+def _judged(
+    config: Config, run_id: str, model: Model, log: Arrays, ending: str, wall: float
+) -> Summary:
+    period = 1.0 / config.controller.rate
+    commanded, wanted = config.behaviour.commanded, config.duration
+    halts, links = config.behaviour.halts, links_of(config)
+    judgement = judge(log, config.criteria, commanded, period, wanted, model.mj, halts, links)
+    columns = judgement.columns
+    if not isinstance(config.disturbance, Calm) and not config.disturbance.changes_model:
+        columns = columns | disturbed.measure(log, period)
+    reason = ending or judgement.reason
+    row = {
+        "run_id": run_id,
+        "behaviour": config.behaviour.name,
+        "criteria": config.criteria.kind,
+        "seed": config.seed,
+        "success": not reason,
+        "failure_reason": reason,
+        **columns,
+        "real_time_factor": columns["duration"] / wall,
+    }
+    # JSON has no NaN: a number that a broken-down run does not have is null.
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in row.items()}
+
+
+def links_of(config: Config) -> tuple[Link, ...]:
+    """What is asked of the parts of a chain; nothing of what is none."""
+    if not isinstance(config.behaviour, ChainSettings):
+        return ()
+    return tuple(
+        Link(one.behaviour.name, one.stages, one.behaviour.commanded, one.behaviour.halts)
+        for one in config.behaviour.parts
+    )
+
+
+def broke_down(summary: Mapping[str, Any]) -> bool:
+    """Whether a run itself failed, as opposed to the roll."""
+    physics = str(summary["failure_reason"]).startswith(BROKE_DOWN)
+    return bool(summary["solver_failures"]) or physics

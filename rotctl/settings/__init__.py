@@ -1,0 +1,1 @@
+"""Settings: from YAML to plain data to frozen, validated dataclasses, and back."""
