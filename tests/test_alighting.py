@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.alighting import Alighting, AlightingSettings
+from rotctl.behaviours.rolling.alighting import Alighting, AlightingSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics import state as states

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rotctl.behaviours.posing import Beyond, OverPhase
+from rotctl.behaviours.staged.posing import Beyond, OverPhase
 from rotctl.config.config import load
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

@@ -13,11 +13,11 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours import support
-from rotctl.behaviours.attitudes import Upright
-from rotctl.behaviours.footholds import capture_point, landing
 from rotctl.behaviours.scene import Step
-from rotctl.behaviours.swing_foot import chosen
-from rotctl.behaviours.swinging import arrival
+from rotctl.behaviours.staged.attitudes import Upright
+from rotctl.behaviours.standing.footholds import capture_point, landing
+from rotctl.behaviours.standing.swing_foot import chosen
+from rotctl.behaviours.standing.swinging import arrival
 from rotctl.config.config import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task

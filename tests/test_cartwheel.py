@@ -9,10 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours import support
 from rotctl.behaviours.facing import frame_of
-from rotctl.behaviours.stages import Otherwise, mirrored
-from rotctl.behaviours.touching import Touches
-from rotctl.behaviours.until import Passed
-from rotctl.behaviours.wheeling import Carry, Place, Stride, share_of, ways
+from rotctl.behaviours.staged.stages import Otherwise, mirrored
+from rotctl.behaviours.staged.touching import Touches
+from rotctl.behaviours.staged.until import Passed
+from rotctl.behaviours.standing.wheeling import Carry, Place, Stride, share_of, ways
 from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.metrics.acrobatic import judge

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.catching import Catch, CatchSettings
+from rotctl.behaviours.rolling.catching import Catch, CatchSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.maths.rotations import advanced

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from here import swept
 
-from rotctl.behaviours.until import After
+from rotctl.behaviours.staged.until import After
 from rotctl.choices import listing
 from rotctl.cli.wording import readable
 from rotctl.config.chained import composed

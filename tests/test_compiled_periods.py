@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.compiled_roll import PACE
-from rotctl.behaviours.pacing import PaceSettings
-from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.behaviours.rolling.compiled_roll import PACE
+from rotctl.behaviours.rolling.pacing import PaceSettings
+from rotctl.behaviours.rolling.rolling_settings import RollingSettings
 from rotctl.config.config import load
 from rotctl.control import compiled
 from rotctl.mechanics import pair_limit

@@ -5,7 +5,7 @@ from math import cos, radians, sin, tau
 import numpy as np
 import pytest
 
-from rotctl.behaviours.course import Course, Going, PathSettings, RatesSettings
+from rotctl.behaviours.rolling.course import Course, Going, PathSettings, RatesSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError, LogError
 from rotctl.maths.rotations import about_up, rotate

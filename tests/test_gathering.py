@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.gathering import Beside
+from rotctl.behaviours.standing.gathering import Beside
 from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.runs.run import in_memory

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.landing import Landing
-from rotctl.behaviours.posing import TurnSettings
-from rotctl.behaviours.stages import Stage, mirrored
+from rotctl.behaviours.aerial.landing import Landing
+from rotctl.behaviours.staged.posing import TurnSettings
+from rotctl.behaviours.staged.stages import Stage, mirrored
 from rotctl.config.config import load
 from rotctl.metrics.acrobatic import AcrobaticCriteria, judge, out_of_order, told
 from rotctl.metrics.standing import StandingCriteria

@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.poising import Shift, _hands, _over
-from rotctl.behaviours.posing import GlideSettings
-from rotctl.behaviours.stages import Stage, mirrored
-from rotctl.behaviours.until import Over
+from rotctl.behaviours.staged.posing import GlideSettings
+from rotctl.behaviours.staged.stages import Stage, mirrored
+from rotctl.behaviours.staged.until import Over
+from rotctl.behaviours.standing.poising import Shift, _hands, _over
 from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.mechanics.bodies import ROOT_BODY

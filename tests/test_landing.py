@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.landing import Landing
+from rotctl.behaviours.aerial.landing import Landing
 from rotctl.behaviours.support import ends, middle
 from rotctl.config.config import composed, load
 from rotctl.config.schema import check

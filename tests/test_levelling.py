@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from flights import ARCHED, HEAD_FIRST, LONG, TUCK, flier, spawn
 
-from rotctl.behaviours.levelling import Ahead, Levelled, _solved
+from rotctl.behaviours.aerial.levelling import Ahead, Levelled, _solved
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics import dive

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.behaviours import obliqueness
+from rotctl.behaviours.rolling import obliqueness
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory

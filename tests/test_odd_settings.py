@@ -5,7 +5,7 @@ from typing import get_args, get_type_hints
 
 import pytest
 
-from rotctl.behaviours.aims import Aim
+from rotctl.behaviours.staged.aims import Aim
 from rotctl.config.config import composed
 from rotctl.config.schema import check
 from rotctl.control.kinds import KINDS

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.behaviours.pivoting import Bring, Escapes
+from rotctl.behaviours.standing.pivoting import Bring, Escapes
 from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.errors import InputError

@@ -7,7 +7,7 @@ from math import tau
 import numpy as np
 import pytest
 
-from rotctl.behaviours.pacing import SLIP, Clock, Pace, PaceSettings
+from rotctl.behaviours.rolling.pacing import SLIP, Clock, Pace, PaceSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.judge import judge

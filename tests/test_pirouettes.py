@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from rotctl.behaviours.aerial.flight import Flight
 from rotctl.behaviours.facing import frame_of
-from rotctl.behaviours.flight import Flight
 from rotctl.config.config import composed, load
 from rotctl.config.schema import check
 from rotctl.errors import InputError

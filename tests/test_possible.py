@@ -5,7 +5,7 @@ from math import radians
 import pytest
 from flights import HEAD_FIRST, flier, fly
 
-from rotctl.behaviours.possible import GONE
+from rotctl.behaviours.aerial.possible import GONE
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build

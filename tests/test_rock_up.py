@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rotctl.behaviours.until import Leant
+from rotctl.behaviours.staged.until import Leant
 from rotctl.config.config import load
 from rotctl.config.schema import changed
 from rotctl.errors import InputError

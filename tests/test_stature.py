@@ -7,14 +7,14 @@ from typing import get_args, get_type_hints
 import numpy as np
 import pytest
 
-from rotctl.behaviours.aims import Aim
-from rotctl.behaviours.launch import Launch, Whirl
-from rotctl.behaviours.rolling_settings import RollingSettings
+from rotctl.behaviours.aerial.launch import Launch, Whirl
+from rotctl.behaviours.chain.ways import Posture
+from rotctl.behaviours.rolling.rolling_settings import RollingSettings
 from rotctl.behaviours.similar import UNITS
 from rotctl.behaviours.similar import similar as asking
-from rotctl.behaviours.until import Until
-from rotctl.behaviours.ways import Posture
-from rotctl.behaviours.wheeling import Carry, Place, Stride
+from rotctl.behaviours.staged.aims import Aim
+from rotctl.behaviours.staged.until import Until
+from rotctl.behaviours.standing.wheeling import Carry, Place, Stride
 from rotctl.config.config import load
 from rotctl.control.similar import similar
 from rotctl.errors import InputError

@@ -2,8 +2,8 @@
 
 import pytest
 
-from rotctl.behaviours.launch import Launch
-from rotctl.behaviours.take_off import at_speed
+from rotctl.behaviours.aerial.launch import Launch
+from rotctl.behaviours.staged.take_off import at_speed
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.flip import judge

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.behaviours.pacing import Pace
-from rotctl.behaviours.waiting import Waiting
+from rotctl.behaviours.rolling.pacing import Pace
+from rotctl.behaviours.rolling.waiting import Waiting
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.behaviours.ways import FaceDown, Rolls, Way
+from rotctl.behaviours.chain.ways import FaceDown, Rolls, Way
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.getting_up import GettingUpCriteria, judge

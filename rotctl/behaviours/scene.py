@@ -30,7 +30,7 @@ class Begin(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step with a foot, or none where both stand; see `rotctl.behaviours.stepping`.
+    """A step with a foot, or none where both stand; see `rotctl.behaviours.standing.stepping`.
 
     Attributes:
         swing, stance: MuJoCo ids of the feet; 0 where none swings.

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from functools import cache
 
 from rotctl.behaviours import BehaviourSettings
-from rotctl.behaviours.chain_settings import ChainSettings
-from rotctl.behaviours.placing import Watch
-from rotctl.behaviours.rolling_settings import RollingSettings
-from rotctl.behaviours.staged_settings import StagedSettings
+from rotctl.behaviours.chain.chain_settings import ChainSettings
+from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+from rotctl.behaviours.staged.placing import Watch
+from rotctl.behaviours.staged.staged_settings import StagedSettings
 from rotctl.choices import choosing
 from rotctl.choices.listing import content, shipped_files
 from rotctl.config.schema import Config

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
 
-from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.behaviours.chain.chain_settings import ChainSettings
 from rotctl.config.schema import Config
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics.model import Model

@@ -87,13 +87,13 @@ typedef struct {
   int count;
 } Sums;
 
-// The phase and what goes with it, as a roll remembers them; behaviours/remembering.py. The
+// The phase and what goes with it, as a roll remembers them; behaviours/rolling/remembering.py. The
 // clock (`due`, `late`) is the pace's.
 typedef struct {
   double angle[3], orientation[4], phase, axis[3], origin[3], first_angle[3], due, late;
 } RollMemory;
 
-// A pace's settings; behaviours/pacing.py. Times of changes are (changes), rates one more.
+// A pace's settings; behaviours/rolling/pacing.py. Times of changes are (changes), rates one more.
 typedef struct {
   double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, approach, leave;
   double back, ahead;
@@ -103,7 +103,7 @@ typedef struct {
   const int* over;  // (count) bodies
 } Pace;
 
-// What catches a roll that tips, behaviours/catching.py: motors (2, count) of the two
+// What catches a roll that tips, behaviours/rolling/catching.py: motors (2, count) of the two
 // sides, -1 where the body has none.
 typedef struct {
   double gain, free, lead;
@@ -112,8 +112,8 @@ typedef struct {
   const double *out, *low, *high;
 } Catch;
 
-// Limbs that come down, behaviours/alighting.py: bodies (limbs), and motors and joints one limb's
-// after the other's, each up to its `end` (limbs).
+// Limbs that come down, behaviours/rolling/alighting.py: bodies (limbs), and motors and joints one
+// limb's after the other's, each up to its `end` (limbs).
 typedef struct {
   double lead, sinking, reach, most;
   int limbs;
@@ -122,8 +122,8 @@ typedef struct {
 } Alighting;
 
 // A roll's constants. Of the poses either `table` and `rise` (rows, 2, nu) are there, or the
-// `coefficients` (2, waves, nu), and `waiting` (nu) or none is of behaviours/waiting.py; its two
-// tasks are where the command has them.
+// `coefficients` (2, waves, nu), and `waiting` (nu) or none is of behaviours/rolling/waiting.py; its
+// two tasks are where the command has them.
 typedef struct {
   double axes[9], front[3], way[3], velocity[3], angular_velocity[3];
   double sign, slope, period, correction_time, phase_time;

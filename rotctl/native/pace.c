@@ -1,4 +1,4 @@
-// behaviours/pacing.py: what a pace asks for at one instant, put into a roll's tasks.
+// behaviours/rolling/pacing.py: what a pace asks for at one instant, put into a roll's tasks.
 #include "layout.h"
 #include "rotations.h"
 #include "small.h"

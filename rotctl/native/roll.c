@@ -1,5 +1,5 @@
-// behaviours/remembering.py with mechanics/excursion.py: what a roll remembers; behaviours/rolling.py:
-// what it wants.
+// behaviours/rolling/remembering.py with mechanics/excursion.py: what a roll remembers;
+// behaviours/rolling/rolling.py: what it wants.
 #include "layout.h"
 #include "rotations.h"
 #include "small.h"
@@ -12,7 +12,7 @@ static double over_phase(const double* waves, int count, double phase) {
   return total;
 }
 
-// behaviours/obliqueness.py: the trunk's axis that should stay on the rolling axis
+// behaviours/rolling/obliqueness.py: the trunk's axis that should stay on the rolling axis
 static void incline(const Roll* r, const double* trunk, RollMemory* it) {
   double tilt = over_phase(r->oblique, r->oblique_waves, it->phase) * (mjPI / 180);
   for (int i = 0; i < 3; i++) it->axis[i] = cos(tilt) * it->axis[i] + sin(tilt) * trunk[3 * i + 2];
@@ -80,7 +80,7 @@ static void poses_at(const Roll* r, double phase, int nu, double* a, double* b) 
   }
 }
 
-// behaviours/catching.py `share`, `rise` and `spread`
+// behaviours/rolling/catching.py `share`, `rise` and `spread`
 static void spread(const Catch* c, const Reading* now, const RollMemory* it, double* pose) {
   const double* turning = now->angular_velocity;
   double rate = turning[0] * it->axis[1] - turning[1] * it->axis[0];
@@ -96,7 +96,7 @@ static void spread(const Catch* c, const Reading* now, const RollMemory* it, dou
   }
 }
 
-// behaviours/alighting.py `turns` and `moved`, of both poses
+// behaviours/rolling/alighting.py `turns` and `moved`, of both poses
 static void alight(const Alighting* g, const mjData* d, const Roll* r, const Reading* now,
                    const RollMemory* it, double* a, double* b) {
   const double *left = r->axes + 3, *middle = d->subtree_com + 3;
@@ -127,7 +127,7 @@ static void alight(const Alighting* g, const mjData* d, const Roll* r, const Rea
   }
 }
 
-// behaviours/waiting.py `settled`
+// behaviours/rolling/waiting.py `settled`
 static void settle(const double* angles, double waits, int nu, double* pose) {
   for (int i = 0; i < nu; i++) {
     if (!isnan(angles[i])) pose[i] += waits * (angles[i] - pose[i]);

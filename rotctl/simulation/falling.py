@@ -7,7 +7,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import similar
-from rotctl.behaviours.landing import Contact, Landing, LandingSettings
+from rotctl.behaviours.aerial.landing import Contact, Landing, LandingSettings
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.model import Model

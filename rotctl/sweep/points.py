@@ -11,7 +11,7 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from rotctl.behaviours.chain_settings import ChainSettings
+from rotctl.behaviours.chain.chain_settings import ChainSettings
 from rotctl.choices import labels
 from rotctl.choices.choosing import package
 from rotctl.choices.listing import choices

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rotctl.headless import mujoco_without_opengl
 
     mujoco_without_opengl()
-    from rotctl.behaviours.chain_settings import first_stage
+    from rotctl.behaviours.chain.chain_settings import first_stage
     from rotctl.config.config import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
     from rotctl.metrics.judge import settling

@@ -1,0 +1,1 @@
+"""Laws of who flies: the take-off, the shape in the air, the landing."""

@@ -1,0 +1,257 @@
+"""From standing into the air: lean, and a push that gives height, way and angular momentum at once.
+
+The launch knows what it is for. Of the flight that follows it takes the time in the air, from
+ballistics, and asks for the momentum with which an average tuck turns as far as is wanted in that
+time: neither too little nor too much, [AlBorno2014]. Velocity and angular momentum are then to be
+there together, when the centre of mass has risen to where the legs end.
+"""
+
+from collections.abc import Mapping
+from math import copysign, sqrt
+from typing import Literal, NamedTuple
+
+from pydantic.dataclasses import dataclass as validated
+
+from rotctl.behaviours import support
+from rotctl.behaviours.aerial.flight import Flight
+from rotctl.behaviours.scene import Scene
+from rotctl.control.task import Tasks
+from rotctl.errors import InputError
+from rotctl.maths.linear import solve
+from rotctl.maths.rotations import Array, dot
+from rotctl.mechanics.bodies import body_ids
+from rotctl.mechanics.model import Model
+from rotctl.settings.settings import STRICT, Finite, Fraction, NonNegative, Positive
+
+
+@validated(frozen=True, config=STRICT)
+class Lean:
+    """Go down, then fall slowly to one side, pressure inside the feet all the while: linear.
+
+    Along the way the centre of mass gets its speed, as far as pressure within the feet can give
+    it; across it the capture point is kept over them.
+
+    Attributes:
+        bodies: that stand.
+        margin: inside the support that the pressure keeps [m].
+        speed: to forward, backward where it is negative [m/s]; 0 keeps its place.
+        eager: how fast a speed is taken up [1/s].
+        gain: of the pressure beyond the capture point [-].
+        height: of the centre of mass over the ground [m]; sink: it comes there at [m/s], and
+            steady: in the end slower, by its distance [1/s].
+        ahead: of the middle of the feet, where it keeps to [m].
+    """
+
+    law: Literal["lean"]
+    bodies: tuple[str, ...]
+    margin: NonNegative
+    speed: Finite
+    eager: Positive
+    gain: NonNegative
+    height: Positive
+    sink: Positive
+    steady: Positive
+    ahead: Finite = 0.0
+
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        (ahead, left, _), momentum = scene.axes, scene.state.momentum
+        base = standing(scene, self.bodies)
+        if self.speed:
+            more = self.eager * (self.speed - dot(momentum.com_velocity, ahead))
+            along = pushed(scene, base, ahead, more, self.margin)
+        else:
+            along = captured(scene, base, ahead, self.gain, self.margin, self.ahead)
+        across = captured(scene, base, left, self.gain, self.margin)
+        task["acceleration"] = along * ahead + across * left
+        above = float(momentum.com[2]) - scene.floor - self.height
+        down = min(max(self.steady * above, -self.sink), self.sink)
+        fall = float(momentum.com_velocity[2])
+        task["acceleration"][2] = -self.eager * (down + fall)
+
+
+@validated(frozen=True, config=STRICT)
+class Launch:
+    """The velocity at take-off is there when the height is: linear.
+
+    Attributes:
+        bodies: that push.
+        gain, margin: as for `lean`, across the way.
+        forward, up: velocity at take-off [m/s]; hands are left on the way down.
+        height: of the centre of mass over the ground there [m].
+        soonest: the time that is left counts as so much at least [s].
+        most: take-off that may be commanded, as measured: beyond it legs give no more speed, and
+            less else [m/s]; 0 sets no limit.
+    """
+
+    law: Literal["launch"]
+    bodies: tuple[str, ...]
+    gain: NonNegative
+    margin: NonNegative
+    forward: Finite
+    up: Finite
+    height: Positive
+    soonest: Positive
+    most: NonNegative = 0.0
+
+    def check(self, model: Model, key: str) -> None:
+        """Raises InputError for a body that is not there; `key` says where the aim stands."""
+        body_ids(model.mj, self.bodies, f"{key}.bodies")
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        ahead, left, _ = scene.axes
+        time = self.left(scene)
+        velocity = scene.state.momentum.com_velocity
+        missing = self.forward * ahead - velocity
+        missing[2] = self.up - float(velocity[2])
+        across = captured(scene, standing(scene, self.bodies), left, self.gain, self.margin)
+        wanted = missing / time
+        task["acceleration"] = wanted + (across - dot(wanted, left)) * left
+
+    def left(self, scene: Scene) -> float:
+        """Time to take-off [s], at the mean of the speed now and that at take-off."""
+        way = max(scene.floor + self.height - float(scene.state.momentum.com[2]), 0.0)
+        speed = max(float(scene.state.momentum.com_velocity[2]) + self.up, 0.5)
+        return max(2.0 * way / speed, self.soonest)
+
+
+@validated(frozen=True, config=STRICT)
+class Whirl:
+    """Angular momentum at take-off, as much as the flight needs at an average tuck: spin.
+
+    Attributes:
+        task: whose aim is `launch`.
+        flight: name of the stage that flies.
+        amount: of the tuck that is planned with [-]: room is left to either side.
+        calm: angular momentum across the way fades at this rate [1/s].
+        most: that the push gives [kg m2/s], as measured: what needs more is refused.
+        least: it is so much, where less would do [kg m2/s]: what a launch gives across the way by
+            mistake is then a small part of it, and the body flies longer than planned.
+        ceiling: no more is asked for, whatever the flight needs [kg m2/s]; 0 sets none.
+    """
+
+    law: Literal["whirl"]
+    task: str
+    flight: str
+    amount: Fraction
+    calm: NonNegative
+    most: Positive
+    least: NonNegative = 0.0
+    ceiling: NonNegative = 0.0
+
+    def check(self, model: Model, key: str) -> None:
+        """Nothing can be wrong."""
+
+    def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
+        """Set the acceleration."""
+        momentum, about = scene.state.momentum, scene.turning
+        launch, _ = self.parts(scene.aims, scene.laws)
+        along = dot(momentum.angular, about)
+        rate = -self.calm * (momentum.angular - along * about)
+        rate += (self.wanted(scene) - along) / launch.left(scene) * about
+        task["acceleration"] = solve(momentum.inertia, rate)
+
+    def wanted(self, scene: Scene) -> float:
+        """Angular momentum at take-off about the axis [kg m2/s]."""
+        launch, flight = self.parts(scene.aims, scene.laws)
+        wanted = flight.planned(scene, self.amount, launch.forward, launch.up, launch.height)
+        wanted = copysign(max(abs(wanted), self.least), scene.target)
+        return min(max(wanted, -self.ceiling), self.ceiling) if self.ceiling else wanted
+
+    def enough(self, scene: Scene) -> bool:
+        """Whether it has that already."""
+        wanted = self.wanted(scene)
+        return dot(scene.state.momentum.angular, scene.turning) * copysign(1.0, wanted) >= abs(
+            wanted
+        )
+
+    def parts(
+        self, aims: Mapping[str, object], laws: Mapping[str, object]
+    ) -> tuple[Launch, Flight]:
+        """The launch that it belongs to, and the flight that it is for.
+
+        Args:
+            aims: of the stage's tasks; laws: of the behaviour's poses, by the name of the stage.
+
+        Raises:
+            InputError: one of them is not there.
+        """
+        launch, flight = aims.get(self.task), laws.get(self.flight)
+        if not isinstance(launch, Launch):
+            raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
+        if not isinstance(flight, Flight):
+            raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
+        return launch, flight
+
+
+class Base(NamedTuple):
+    """What it stands on at one instant.
+
+    Attributes:
+        corners, middle: of the bodies that stand, seen from above [m].
+        rate: of the pendulum on them [1/s], see `pendulum_rate`.
+    """
+
+    corners: list[support.Point]
+    middle: support.Point
+    rate: float
+
+
+def standing(scene: Scene, bodies: tuple[str, ...]) -> Base:
+    """What it stands on, where these bodies do."""
+    ends = _ends(scene, bodies)
+    return Base(support.hull(ends), support.middle(ends), pendulum_rate(scene))
+
+
+def _ends(scene: Scene, bodies: tuple[str, ...]) -> list[support.Point]:
+    found = body_ids(scene.model.mj, bodies)
+    return support.ends(scene.model, scene.state.data, found)
+
+
+def leaning(scene: Scene, bodies: tuple[str, ...]) -> tuple[float, float]:
+    """How far the centre of mass is ahead of the middle of the feet, and over the ground [m]."""
+    mx, my = support.middle(_ends(scene, bodies))
+    x, y, z = scene.state.momentum.com.tolist()
+    fx, fy, _ = scene.axes[0].tolist()
+    return fx * (x - mx) + fy * (y - my), z - scene.floor
+
+
+def captured(
+    scene: Scene, base: Base, way: Array, gain: float, margin: float, over: float = 0.0
+) -> float:
+    """Acceleration along a level way (3,) that keeps the capture point over the feet [m/s2].
+
+    Args:
+        over: so far along the way from the middle of the feet [m].
+    """
+    (mx, my), rate = base.middle, base.rate
+    com, velocity = scene.state.momentum.com, scene.state.momentum.com_velocity
+    wx, wy, _ = way.tolist()
+    off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
+    out = off + dot(velocity, way) / rate
+    wanted = rate * rate * (off - (1.0 + gain) * out + gain * over)
+    return pushed(scene, base, way, wanted, margin)
+
+
+def pushed(scene: Scene, base: Base, way: Array, wanted: float, margin: float) -> float:
+    """What of an acceleration along a level way (3,) the feet can give [m/s2].
+
+    The ways are looked at one by one: pressure at the toes still balances from side to side.
+    """
+    corners, (mx, my), rate = base
+    com, (wx, wy, _) = scene.state.momentum.com, way.tolist()
+    off = wx * (float(com[0]) - mx) + wy * (float(com[1]) - my)
+    out = off - wanted / (rate * rate)
+    px, py = support.within(corners, (mx, my), (mx + out * wx, my + out * wy), margin)
+    return rate * rate * (off - wx * (px - mx) - wy * (py - my))
+
+
+def pendulum_rate(scene: Scene) -> float:
+    """Omega of the pendulum that stands on the floor [1/s], beside which there may be an abyss."""
+    height = float(scene.state.momentum.com[2]) - scene.floor
+    return sqrt(-float(scene.model.gravity[2]) / max(height, support.LEAST_HEIGHT))

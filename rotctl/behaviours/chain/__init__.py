@@ -1,0 +1,1 @@
+"""Chains: one kind of behaviour, made of others that follow each other."""

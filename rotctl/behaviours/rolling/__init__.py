@@ -1,0 +1,1 @@
+"""Rolls: one kind of behaviour, that goes by the phase of a turn."""

@@ -1,0 +1,1 @@
+"""Staged behaviours: one kind, that goes from stage to stage as the state says."""
