@@ -8,7 +8,7 @@ from flights import HEAD_FIRST, flier, fly
 
 from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.metrics import dive
+from rotctl.metrics.criteria import dive
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

@@ -15,8 +15,8 @@ from rotctl.behaviours.staged.until import Passed
 from rotctl.behaviours.standing.wheeling import Carry, Place, Stride, share_of, ways
 from rotctl.config.config import load
 from rotctl.control.task import TASK
-from rotctl.metrics.acrobatic import judge
-from rotctl.metrics.flip import turn
+from rotctl.metrics.criteria.acrobatic import judge
+from rotctl.metrics.criteria.flip import turn
 from rotctl.metrics.touching import touch_downs
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

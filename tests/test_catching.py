@@ -11,7 +11,7 @@ from rotctl.behaviours.rolling.catching import Catch, CatchSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.maths.rotations import advanced
-from rotctl.metrics.judge import judge
+from rotctl.metrics.criteria.judge import judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

@@ -11,7 +11,7 @@ from rotctl.errors import InputError, LogError
 from rotctl.maths.rotations import about_up, rotate
 from rotctl.mechanics import excursion
 from rotctl.metrics.columns import along_way, in_frame, turns
-from rotctl.metrics.judge import judge
+from rotctl.metrics.criteria.judge import judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

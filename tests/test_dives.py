@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics import dive
+from rotctl.metrics.criteria import dive
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode

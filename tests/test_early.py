@@ -5,7 +5,7 @@ import re
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics.early import of_a_part
+from rotctl.metrics.criteria.early import of_a_part
 from rotctl.runs.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")

@@ -11,7 +11,7 @@ from rotctl.cli.cli import main
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics.claims import SUCCESS_RATE
-from rotctl.metrics.judge import COLUMNS
+from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.results.experiments import copies, experiment, matrix, names, read
 from rotctl.sweep.claimed import require_claims
 from rotctl.sweep.plan import planned

@@ -7,9 +7,9 @@ import pytest
 
 from rotctl.errors import InputError
 from rotctl.log.schema import SCHEMA
-from rotctl.metrics.evaluation import evaluate
-from rotctl.metrics.expression import LONGEST, NAMES, read, read_all
-from rotctl.metrics.operations import FUNCTIONS, LOOKED_UP
+from rotctl.metrics.expressions.evaluation import evaluate
+from rotctl.metrics.expressions.expression import LONGEST, NAMES, read, read_all
+from rotctl.metrics.expressions.operations import FUNCTIONS, LOOKED_UP
 
 STEPS = 8
 BODIES = ["world", "pelvis", "head"]

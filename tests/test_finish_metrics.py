@@ -5,9 +5,9 @@ import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
 from rotctl.config.config import load
-from rotctl.metrics.early import too_short
-from rotctl.metrics.finish import FinishCriteria, judge, rolled, upright
-from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.criteria.early import too_short
+from rotctl.metrics.criteria.finish import FinishCriteria, judge, rolled, upright
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.runs.scenario import build
 
 ASKED = {

@@ -5,9 +5,9 @@ import pytest
 
 from rotctl.config.config import load
 from rotctl.maths.rotations import rotate
-from rotctl.metrics.flip import FlipCriteria, longest_flight, measure, turn
-from rotctl.metrics.flip import judge as judge_flip
-from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.criteria.flip import FlipCriteria, longest_flight, measure, turn
+from rotctl.metrics.criteria.flip import judge as judge_flip
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

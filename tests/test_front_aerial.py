@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics.flip import judge, longest_flight, measure
+from rotctl.metrics.criteria.flip import judge, longest_flight, measure
 from rotctl.metrics.touching import touch_downs
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

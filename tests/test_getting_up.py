@@ -18,8 +18,8 @@ from rotctl.config.config import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read
-from rotctl.metrics.finish import upright
-from rotctl.metrics.getting_up import GettingUpCriteria, judge
+from rotctl.metrics.criteria.finish import upright
+from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.start import place

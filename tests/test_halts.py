@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
+from rotctl.metrics.criteria.rolling import measure
+from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.halts import going, unkept
 from rotctl.metrics.halts import measure as told_to
-from rotctl.metrics.rolling import measure
-from rotctl.metrics.rolling_rules import failure_reason
 
 HALTS = ((7.0, 11.0),)
 TIME = PERIOD * np.arange(1201)

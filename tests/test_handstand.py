@@ -14,7 +14,7 @@ from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.state import read
-from rotctl.metrics.acrobatic import HeldCriteria, judge, longest_held
+from rotctl.metrics.criteria.acrobatic import HeldCriteria, judge, longest_held
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

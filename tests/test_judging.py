@@ -14,7 +14,7 @@ from rotctl.config.config import load
 from rotctl.config.identity import run_id
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.metrics import judge as metrics
+from rotctl.metrics.criteria import judge as metrics
 from rotctl.results.index import read
 from rotctl.runs.run import make, run
 from rotctl.runs.scenario import model_of

@@ -8,7 +8,7 @@ from flights import ARCHED, HEAD_FIRST, LONG, TUCK, flier, spawn
 from rotctl.behaviours.aerial.levelling import Ahead, Levelled, _solved
 from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.metrics import dive
+from rotctl.metrics.criteria import dive
 from rotctl.motion import make_pose
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

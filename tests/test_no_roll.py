@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics.rolling import measure
-from rotctl.metrics.rolling_rules import failure_reason
+from rotctl.metrics.criteria.rolling import measure
+from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.runs.summary import summarise

@@ -13,7 +13,7 @@ from rotctl.config.config import load
 from rotctl.control.task import TASK
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
-from rotctl.metrics.one_foot import judge, measure
+from rotctl.metrics.criteria.one_foot import judge, measure
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

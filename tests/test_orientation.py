@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics.orientation import failure, measure
+from rotctl.metrics.criteria.orientation import failure, measure
 
 PERIOD = 1.0 / 60.0
 CRITERIA = load(["behaviour=turn_over"]).criteria

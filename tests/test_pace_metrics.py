@@ -5,7 +5,7 @@ import pytest
 
 from rotctl.cli.wording import readable
 from rotctl.config.config import load
-from rotctl.metrics.judge import settling
+from rotctl.metrics.criteria.judge import settling
 from rotctl.metrics.pace import measure, off
 
 PERIOD = 1.0 / 60.0

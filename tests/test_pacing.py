@@ -10,7 +10,7 @@ import pytest
 from rotctl.behaviours.rolling.pacing import SLIP, Clock, Pace, PaceSettings
 from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.metrics.judge import judge
+from rotctl.metrics.criteria.judge import judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics import dive, flip, peaks
+from rotctl.metrics import peaks
+from rotctl.metrics.criteria import dive, flip
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

@@ -12,7 +12,7 @@ from rotctl.behaviours.facing import frame_of
 from rotctl.config.config import composed, load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
-from rotctl.metrics.flip import judge, longest_flight, turn
+from rotctl.metrics.criteria.flip import judge, longest_flight, turn
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode

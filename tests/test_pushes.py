@@ -13,7 +13,7 @@ from rotctl.cli.wording import readable
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.mechanics.onset import Onset
-from rotctl.metrics.judge import judge
+from rotctl.metrics.criteria.judge import judge
 from rotctl.report.site import pushes
 from rotctl.report.site.charts import charts
 from rotctl.report.site.grid import grid

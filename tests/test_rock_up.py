@@ -10,7 +10,7 @@ from rotctl.behaviours.staged.until import Leant
 from rotctl.config.config import load
 from rotctl.config.schema import changed
 from rotctl.errors import InputError
-from rotctl.metrics.getting_up import GettingUpCriteria, judge
+from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.known import StateSettings

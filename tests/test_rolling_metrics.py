@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.metrics.quantile import median, percentile
-from rotctl.metrics.rolling import (
+from rotctl.metrics.criteria.rolling import (
     OF_REVOLUTIONS,
     RollingCriteria,
     RollingMetrics,
     measure,
 )
-from rotctl.metrics.rolling_rules import failure_reason
+from rotctl.metrics.criteria.rolling_rules import failure_reason
+from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about
 from rotctl.results.groups import OF_ROLLS_IN_FILES_ONLY
 

@@ -12,8 +12,8 @@ from rotctl.behaviours.facing import FACING
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.metrics import appearance
-from rotctl.metrics.rolling import measure
-from rotctl.metrics.rolling_rules import failure_reason
+from rotctl.metrics.criteria.rolling import measure
+from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.skeleton import Skeleton
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

@@ -9,7 +9,7 @@ import pytest
 from rotctl.config.config import load
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
-from rotctl.metrics.expression import read
+from rotctl.metrics.expressions.expression import read
 from rotctl.tune.attempt import Attempt, attempt, hopeless
 from rotctl.tune.objective import LOST, TrialRun, finished, overall, score
 from rotctl.tune.space import Objective, Stopping, Wish

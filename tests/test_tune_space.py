@@ -9,7 +9,7 @@ import yaml
 from rotctl.choices.listing import conf_dir
 from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.metrics.expression import NAMES
+from rotctl.metrics.expressions.expression import NAMES
 from rotctl.settings.written import to_dict
 from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (

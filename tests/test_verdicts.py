@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.config.config import load
-from rotctl.metrics import orientation, standing
+from rotctl.metrics.criteria import orientation, standing
 
 PERIOD = 1.0 / 60.0
 TURNING = load(["behaviour=turn_over"]).criteria

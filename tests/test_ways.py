@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from rotctl.behaviours.chain.ways import FaceDown, Rolls, Way
 from rotctl.config.config import load
 from rotctl.errors import InputError
-from rotctl.metrics.getting_up import GettingUpCriteria, judge
+from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.known import StateSettings

@@ -17,9 +17,9 @@ from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
-from rotctl.metrics.dive import WATCHED, DiveCriteria
-from rotctl.metrics.judge import ChainCriteria, Criteria
-from rotctl.metrics.orientation import OrientationCriteria
+from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
+from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
+from rotctl.metrics.criteria.orientation import OrientationCriteria
 from rotctl.settings.checked import brief
 from rotctl.settings.settings import Vector, ends
 

@@ -17,7 +17,7 @@ from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
-from rotctl.metrics.judge import Criteria
+from rotctl.metrics.criteria.judge import Criteria
 from rotctl.same import kept
 from rotctl.settings.checked import brief, checked, clip
 from rotctl.settings.documents import UNPRINTABLE

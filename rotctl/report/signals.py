@@ -8,7 +8,7 @@ import numpy as np
 from rotctl.log import RunLog
 from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import along_frame, in_frame
-from rotctl.metrics.finish import begins
+from rotctl.metrics.criteria.finish import begins
 from rotctl.report.title import plain
 
 TURN = 2.0 * math.pi  # [rad]

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from rotctl.maths.rotations import Array
-from rotctl.metrics.chain import again, spans
 from rotctl.metrics.columns import Arrays, floats
-from rotctl.metrics.dive import entry
-from rotctl.metrics.flip import longest_flight
+from rotctl.metrics.criteria.chain import again, spans
+from rotctl.metrics.criteria.dive import entry
+from rotctl.metrics.criteria.flip import longest_flight
 from rotctl.report.frame import turns_done
 
 FLIGHT = 0.2  # [s] from so long on it is one, not a hop

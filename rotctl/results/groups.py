@@ -14,8 +14,9 @@ from rotctl import files
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.meant import instead
-from rotctl.metrics import appearance, pace, peaks, rolling
+from rotctl.metrics import appearance, pace, peaks
 from rotctl.metrics.claims import simulated
+from rotctl.metrics.criteria import rolling
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table

@@ -11,9 +11,9 @@ from rotctl.log import RunLog, TrajectoryBuffer
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
 from rotctl.metrics import disturbed
-from rotctl.metrics.chain import Link
 from rotctl.metrics.columns import Arrays
-from rotctl.metrics.judge import judge
+from rotctl.metrics.criteria.chain import Link
+from rotctl.metrics.criteria.judge import judge
 from rotctl.runs.scenario import Scenario, model_of
 
 Summary = dict[str, Any]

@@ -7,7 +7,7 @@ from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.meant import instead
 from rotctl.metrics.claims import SUCCESS_RATE
-from rotctl.metrics.judge import COLUMNS
+from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
 from rotctl.settings.written import to_dict

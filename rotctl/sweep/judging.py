@@ -13,8 +13,8 @@ from rotctl.config.config import composed
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.metrics.evaluation import evaluate
-from rotctl.metrics.expression import Expression
+from rotctl.metrics.expressions.evaluation import evaluate
+from rotctl.metrics.expressions.expression import Expression
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import TAKEN, Table, tabulated
 from rotctl.runs.summary import Summary, judged_again

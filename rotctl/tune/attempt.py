@@ -9,10 +9,10 @@ from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
 from rotctl.maths.rotations import dot
 from rotctl.metrics.columns import Arrays
-from rotctl.metrics.evaluation import evaluate
-from rotctl.metrics.expression import Expression
-from rotctl.metrics.judge import judge
-from rotctl.metrics.rolling import RollingCriteria
+from rotctl.metrics.criteria.judge import judge
+from rotctl.metrics.criteria.rolling import RollingCriteria
+from rotctl.metrics.expressions.evaluation import evaluate
+from rotctl.metrics.expressions.expression import Expression
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.loop import Look

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rotctl.errors import RotctlError
-from rotctl.metrics.expression import read_all
+from rotctl.metrics.expressions.expression import read_all
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.tune.attempt import Attempt, attempt
 from rotctl.tune.objective import LOST, TrialRun

@@ -12,7 +12,9 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
 from rotctl.meant import instead
-from rotctl.metrics import appearance, expression, pace, rolling
+from rotctl.metrics import appearance, pace
+from rotctl.metrics.criteria import rolling
+from rotctl.metrics.expressions import expression
 from rotctl.settings import documents
 from rotctl.settings.checked import checked
 from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
@@ -131,7 +133,7 @@ class Objective:
         heading: taken off for each degree of heading error at the end [1/deg].
         success: on what the config's criteria call a success [-].
         columns: of the summary row or of `metrics`, by name, and what they should be.
-        metrics: further columns by name, as expressions; see `rotctl.metrics.expression`.
+        metrics: further columns by name, as expressions; see `rotctl.metrics.expressions`.
     """
 
     over_runs: Literal["mean", "worst"]

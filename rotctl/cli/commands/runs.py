@@ -69,7 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rotctl.behaviours.chain.chain_settings import first_stage
     from rotctl.config.config import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
-    from rotctl.metrics.judge import settling
+    from rotctl.metrics.criteria.judge import settling
     from rotctl.runs.run import built, run
 
     row = None

@@ -145,7 +145,7 @@ def judge(arguments: argparse.Namespace) -> int:
     from contextlib import closing
 
     from rotctl import files
-    from rotctl.metrics.expression import file_of_metrics, read_all
+    from rotctl.metrics.expressions.expression import file_of_metrics, read_all
     from rotctl.results.groups import grouped, markdown
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine

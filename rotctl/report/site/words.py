@@ -6,7 +6,7 @@ from typing import Any
 
 from rotctl.metrics import appearance, pace
 from rotctl.metrics.claims import SUCCESS_RATE, Claim, Judged, Measured
-from rotctl.metrics.judge import COLUMNS
+from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.report.title import plain
 
 QUANTITIES = {

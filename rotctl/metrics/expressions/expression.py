@@ -19,7 +19,7 @@ import numpy as np
 from rotctl.errors import InputError
 from rotctl.log.schema import SCHEMA
 from rotctl.meant import instead
-from rotctl.metrics.operations import FUNCTIONS, LOOKED_UP, power
+from rotctl.metrics.expressions.operations import FUNCTIONS, LOOKED_UP, power
 from rotctl.settings import documents
 
 LONGEST = 1000  # characters

@@ -2,8 +2,8 @@
 
 import math
 
+from rotctl.metrics.criteria.rolling import RollingCriteria, RollingMetrics
 from rotctl.metrics.halts import STILL
-from rotctl.metrics.rolling import RollingCriteria, RollingMetrics
 
 
 def failure_reason(metrics: RollingMetrics, criteria: RollingCriteria, wanted: float) -> str:

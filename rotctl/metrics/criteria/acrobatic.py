@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import flip, standing
 from rotctl.metrics.columns import Arrays, Column, floats
-from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.criteria import flip, standing
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs
 from rotctl.settings.settings import STRICT, Positive
 

@@ -9,13 +9,13 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import rolling, standing
 from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.criteria import rolling, standing
+from rotctl.metrics.criteria.rolling import RollingCriteria
+from rotctl.metrics.criteria.rolling_rules import failure_reason
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.excerpt import Excerpt
 from rotctl.metrics.halts import Halts
-from rotctl.metrics.rolling import RollingCriteria
-from rotctl.metrics.rolling_rules import failure_reason
-from rotctl.metrics.standing import StandingCriteria
 from rotctl.same import kept
 from rotctl.settings.settings import STRICT, Positive
 

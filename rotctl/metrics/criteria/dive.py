@@ -12,9 +12,9 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import peaks
-from rotctl.metrics.acrobatic import HeldCriteria, longest_held
 from rotctl.metrics.columns import Arrays, Column, floats, frame
-from rotctl.metrics.flip import HOP, longest_flight, turn
+from rotctl.metrics.criteria.acrobatic import HeldCriteria, longest_held
+from rotctl.metrics.criteria.flip import HOP, longest_flight, turn
 from rotctl.settings.settings import STRICT, Finite, Positive
 
 PLATFORM = 0.0  # [m] height of its top

@@ -23,7 +23,7 @@ class Link(NamedTuple):
     Attributes:
         name: of its behaviour.
         stages: how many it has.
-        commanded, halts: see `rotctl.metrics.judge.judge`.
+        commanded, halts: see `rotctl.metrics.criteria.judge.judge`.
     """
 
     name: str

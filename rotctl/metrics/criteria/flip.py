@@ -7,9 +7,10 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import peaks, standing
+from rotctl.metrics import peaks
 from rotctl.metrics.columns import Arrays, Column, floats, frame
-from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.criteria import standing
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.settings.settings import STRICT, Positive
 
 HOP = 0.1  # [s] without a contact that is no flight

@@ -9,7 +9,7 @@ import numpy as np
 
 from rotctl.errors import InputError, RotctlError
 from rotctl.metrics.columns import Arrays
-from rotctl.metrics.expression import (
+from rotctl.metrics.expressions.expression import (
     BINARY,
     COMPARED,
     CONSTANTS,
@@ -18,7 +18,7 @@ from rotctl.metrics.expression import (
     UNARY,
     Expression,
 )
-from rotctl.metrics.operations import FUNCTIONS, LOOKED_UP, SLOW
+from rotctl.metrics.expressions.operations import FUNCTIONS, LOOKED_UP, SLOW
 
 LARGEST = 20_000_000  # elements of an array: twenty minutes of all contacts; 160 MB
 MOST_WORK = 100_000_000  # elements of all arrays together: 800 MB if all are held, a second

@@ -11,10 +11,16 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import (
-    acrobatic,
     appearance,
-    chain,
     disturbed,
+    pace,
+    peaks,
+)
+from rotctl.metrics import halts as told_to
+from rotctl.metrics.columns import Arrays, floats, solver_failures
+from rotctl.metrics.criteria import (
+    acrobatic,
+    chain,
     dive,
     early,
     finish,
@@ -22,26 +28,22 @@ from rotctl.metrics import (
     getting_up,
     one_foot,
     orientation,
-    pace,
-    peaks,
     rolling,
     standing,
 )
-from rotctl.metrics import halts as told_to
-from rotctl.metrics.acrobatic import AcrobaticCriteria
-from rotctl.metrics.chain import Link
-from rotctl.metrics.columns import Arrays, floats, solver_failures
-from rotctl.metrics.dive import DiveCriteria
-from rotctl.metrics.finish import FinishCriteria
-from rotctl.metrics.flip import FlipCriteria
-from rotctl.metrics.getting_up import GettingUpCriteria
+from rotctl.metrics.criteria.acrobatic import AcrobaticCriteria
+from rotctl.metrics.criteria.chain import Link
+from rotctl.metrics.criteria.dive import DiveCriteria
+from rotctl.metrics.criteria.finish import FinishCriteria
+from rotctl.metrics.criteria.flip import FlipCriteria
+from rotctl.metrics.criteria.getting_up import GettingUpCriteria
+from rotctl.metrics.criteria.one_foot import OneFootCriteria
+from rotctl.metrics.criteria.orientation import OrientationCriteria
+from rotctl.metrics.criteria.rolling import RollingCriteria
+from rotctl.metrics.criteria.rolling_rules import failure_reason
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.halts import Halts
-from rotctl.metrics.one_foot import OneFootCriteria
-from rotctl.metrics.orientation import OrientationCriteria
 from rotctl.metrics.quantile import percentile
-from rotctl.metrics.rolling import RollingCriteria
-from rotctl.metrics.rolling_rules import failure_reason
-from rotctl.metrics.standing import StandingCriteria
 from rotctl.settings.settings import MOST_PARTS, STRICT
 
 Single = Annotated[

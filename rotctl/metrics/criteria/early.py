@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rotctl.metrics import finish, standing
-from rotctl.metrics.acrobatic import AcrobaticCriteria, on_hands, out_of_order, to
 from rotctl.metrics.columns import Arrays, floats, in_frame
-from rotctl.metrics.dive import DiveCriteria, entry
-from rotctl.metrics.finish import FinishCriteria
-from rotctl.metrics.flip import HOP, FlipCriteria, longest_flight, turn
-from rotctl.metrics.getting_up import GettingUpCriteria
-from rotctl.metrics.one_foot import OneFootCriteria
-from rotctl.metrics.orientation import OrientationCriteria
-from rotctl.metrics.rolling import RollingCriteria
-from rotctl.metrics.standing import StandingCriteria, on_others
+from rotctl.metrics.criteria import finish, standing
+from rotctl.metrics.criteria.acrobatic import AcrobaticCriteria, on_hands, out_of_order, to
+from rotctl.metrics.criteria.dive import DiveCriteria, entry
+from rotctl.metrics.criteria.finish import FinishCriteria
+from rotctl.metrics.criteria.flip import HOP, FlipCriteria, longest_flight, turn
+from rotctl.metrics.criteria.getting_up import GettingUpCriteria
+from rotctl.metrics.criteria.one_foot import OneFootCriteria
+from rotctl.metrics.criteria.orientation import OrientationCriteria
+from rotctl.metrics.criteria.rolling import RollingCriteria
+from rotctl.metrics.criteria.standing import StandingCriteria, on_others
 from rotctl.metrics.touching import touch_downs
 
 if TYPE_CHECKING:
-    from rotctl.metrics.judge import Criteria
+    from rotctl.metrics.criteria.judge import Criteria
 
 ENDS = "the run ends at"
 _WHEN = re.compile(r"(?<=\bt = )[\d.]+(?= s\b)|(?<=\bat )[\d.]+(?= s\b)")  # in a reason

@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import standing
 from rotctl.metrics.columns import Arrays, Column, floats
+from rotctl.metrics.criteria import standing
 from rotctl.settings.settings import STRICT, Positive
 
 COLUMNS = (
@@ -62,7 +62,7 @@ def measure(
 
     Args:
         period: of the control [s].
-        upright: see `rotctl.metrics.finish.upright` [m]; NaN where nobody knows, and any height
+        upright: see `criteria.finish.upright` [m]; NaN where nobody knows, and any height
             will do.
     """
     com = floats(log, "trajectory/com")

@@ -7,9 +7,9 @@ from typing import Any, Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import flip, standing
 from rotctl.metrics.columns import Arrays, Column, floats
-from rotctl.metrics.standing import StandingCriteria
+from rotctl.metrics.criteria import flip, standing
+from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.settings.settings import STRICT, Positive
 
 COLUMNS = (

@@ -1,0 +1,1 @@
+"""Metrics of one's own: expressions over a log."""
