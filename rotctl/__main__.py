@@ -2,7 +2,7 @@
 
 import sys
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

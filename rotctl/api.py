@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from rotctl.choices import listing
 from rotctl.choices.override_files import expanded
-from rotctl.config.config import load as composed
+from rotctl.config.loading import load as composed
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.motion import load_clip
 from rotctl.motion.cycle import at_places
 from rotctl.motion.ground import rolled

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from browser import Browser, executable
 
-from rotctl.config import config
-from rotctl.config.config import load
+from rotctl.config import loading
+from rotctl.config.loading import load
 from rotctl.control import Command, Decision
 from rotctl.control.pose import PoseTracker
 from rotctl.control.stack import collect
@@ -180,10 +180,10 @@ def _nudged(request):
 @pytest.fixture(scope="session", autouse=True)
 def _what_is_shipped_is_composed_once():
     """Hydra takes a sixth of a second for a config, and tests ask for the same ones often."""
-    shipped, compose, known = config.conf_dir(), config.composed, {}
+    shipped, compose, known = loading.conf_dir(), loading.composed, {}
 
     def composed(overrides):
-        if config.folders() != (shipped,) or any("mjcf" in one for one in overrides):
+        if loading.folders() != (shipped,) or any("mjcf" in one for one in overrides):
             return compose(overrides)
         key = tuple(overrides)
         if key not in known:
@@ -191,7 +191,7 @@ def _what_is_shipped_is_composed_once():
         return pickle.loads(known[key])
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(config, "composed", composed)
+        patch.setattr(loading, "composed", composed)
         yield
 
 

@@ -7,7 +7,7 @@ from math import atan2, degrees, pi, tau
 import mujoco
 import numpy as np
 
-from rotctl.config.config import composed
+from rotctl.config.loading import composed
 from rotctl.config.schema import check
 from rotctl.maths.rotations import quaternion_from_rotation_vector
 from rotctl.mechanics.bodies import is_character, lowest_and_highest

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.sweep import workers
 from rotctl.sweep.engines import Failure, carried_out
 

@@ -7,7 +7,7 @@ from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 
 README = Path(__file__).parent.parent / "README.md"
 BLOCK = re.compile(r"(`make run` prints:\n\n```\n)(.*?)(```\n)", flags=re.DOTALL)

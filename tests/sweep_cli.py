@@ -20,7 +20,7 @@ _HELD = """
 import sys
 from pkgutil import resolve_name
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 
 owner, name = sys.argv[1].rsplit(".", 1)
 owner = resolve_name(owner)

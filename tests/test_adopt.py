@@ -12,14 +12,14 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.adopting import adopt
 from rotctl.adopting.meshes import box
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.stature import grown
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
-from rotctl.settings.checked import checked
+from rotctl.settings.checking import checked
 
 # The tree hangs on the chest, the arms are out to the sides, elbows bent, motors have gears.
 LEG = """

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.rolling.alighting import Alighting, AlightingSettings
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics import state as states
 from rotctl.runs.scenario import build

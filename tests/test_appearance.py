@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics import appearance
 from rotctl.metrics import skeleton as skeletons
 from rotctl.metrics.skeleton import Capsules, Skeleton, _compiled, _reference, overlap

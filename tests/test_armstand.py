@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from flights import HEAD_FIRST, flier, fly
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria import dive
 from rotctl.runs.run import in_memory

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.staged.posing import Beyond, OverPhase
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.runs.summary import summarise

@@ -18,7 +18,7 @@ from rotctl.behaviours.staged.attitudes import Upright
 from rotctl.behaviours.standing.footholds import capture_point, landing
 from rotctl.behaviours.standing.swing_foot import chosen
 from rotctl.behaviours.standing.swinging import arrival
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read

@@ -4,8 +4,8 @@ import mujoco
 import pytest
 
 from rotctl.bench import scaling, solvers, split, startup, whole
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode

@@ -9,11 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours import support
 from rotctl.behaviours.facing import frame_of
+from rotctl.behaviours.staged.conditions import Passed
 from rotctl.behaviours.staged.stages import Otherwise, mirrored
 from rotctl.behaviours.staged.touching import Touches
-from rotctl.behaviours.staged.until import Passed
 from rotctl.behaviours.standing.wheeling import Carry, Place, Stride, share_of, ways
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.task import TASK
 from rotctl.metrics.criteria.acrobatic import judge
 from rotctl.metrics.criteria.flip import turn

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.rolling.catching import Catch, CatchSettings
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.maths.rotations import advanced
 from rotctl.metrics.criteria.judge import judge

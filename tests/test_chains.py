@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from here import swept
 
-from rotctl.behaviours.staged.until import After
+from rotctl.behaviours.staged.conditions import After
 from rotctl.choices import listing
 from rotctl.cli.wording import readable
-from rotctl.config.chained import composed
-from rotctl.config.config import load
+from rotctl.config.chains import composed
 from rotctl.config.identity import run_id
+from rotctl.config.loading import load
 from rotctl.config.schema import check
-from rotctl.control.similar import similar_gains
+from rotctl.control.similarity import similar_gains
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics.stature import gains_likeness
@@ -27,7 +27,7 @@ from rotctl.results.table import table
 from rotctl.runs.run import in_memory, run
 from rotctl.runs.scenario import build
 from rotctl.runs.summary import links_of, summarise
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.simulation.known import StateSettings
 from rotctl.sweep.points import points
 

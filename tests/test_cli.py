@@ -13,7 +13,7 @@ import yaml
 from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.log import RunLog
 
 RUN = ["run", "duration=0.5"]
@@ -335,7 +335,7 @@ def test_one_blas_thread_whatever_the_shell_says(cli, monkeypatch):
 
 def test_help_needs_no_heavy_import():
     script = (
-        "import sys; from rotctl.cli.cli import main\n"
+        "import sys; from rotctl.cli.main import main\n"
         "try: main(['--help'])\n"
         "except SystemExit: pass\n"
         "heavy = {'mujoco', 'numpy', 'hydra', 'h5py', 'pydantic', 'tqdm', 'yaml', 'scipy'}\n"

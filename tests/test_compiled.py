@@ -8,7 +8,7 @@ import pytest
 from both import along
 from questions import Asking, any_task
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.config.schema import check
 from rotctl.control import Controller, compiled, literal
 from rotctl.control.compiled import CompiledStep
@@ -18,7 +18,7 @@ from rotctl.control.stack import collect
 from rotctl.mechanics.state import read
 from rotctl.runs.scenario import build
 from rotctl.settings.plain import put, way
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
 

@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.behaviours.rolling.compiled_roll import PACE
+from rotctl.behaviours.rolling.compiled import PACE
 from rotctl.behaviours.rolling.pacing import PaceSettings
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
-from rotctl.config.config import load
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.config.loading import load
 from rotctl.control import compiled
 from rotctl.mechanics import pair_limit
 from rotctl.runs.run import in_memory

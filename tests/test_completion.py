@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from rotctl.choices.listing import choices, named_files
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.cli.parser import COMMANDS
 
 ROLLS = [name for name in choices("behaviour") if name.startswith("forward_roll")]

@@ -7,8 +7,8 @@ import pytest
 
 from rotctl.choices import listing
 from rotctl.choices.listing import conf_dir, groups
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 
 

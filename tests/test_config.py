@@ -9,16 +9,16 @@ from dataclasses import FrozenInstanceError, asdict
 import pytest
 import yaml
 
-from rotctl.choices import choosing, listing
-from rotctl.choices.choosing import simple
+from rotctl.choices import composing, listing
+from rotctl.choices.composing import simple
 from rotctl.choices.listing import conf_dir, groups
 from rotctl.choices.overrides import single
-from rotctl.config.config import _by_hydra as by_hydra
-from rotctl.config.config import composed, load
+from rotctl.config.loading import _by_hydra as by_hydra
+from rotctl.config.loading import composed, load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build
-from rotctl.settings.written import to_dict, to_yaml
+from rotctl.settings.writing import to_dict, to_yaml
 
 GROUPS = (
     "behaviour, character, controller, criteria, disturbance, excursion, physics, plant, start, "
@@ -475,7 +475,7 @@ CHOICES = [
 
 @pytest.mark.parametrize("overrides", CHOICES, ids=" ".join)
 def test_what_choices_make_is_what_hydra_makes_of_them(overrides):
-    made = choosing.composed(map(simple, overrides))
+    made = composing.composed(map(simple, overrides))
     wanted = by_hydra(overrides, [single(text) for text in overrides])
     assert json.dumps(made) == json.dumps(wanted)  # the order too
 
@@ -531,7 +531,7 @@ def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text
         (tmp_path / "conf" / "finish" / "stand.yaml").write_text(stand)
     monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
     (tmp_path / "package").mkdir()
-    assert choosing.composed([simple("start=rest"), simple("+finish=stand")]) is None
+    assert composing.composed([simple("start=rest"), simple("+finish=stand")]) is None
 
 
 @pytest.mark.parametrize(
@@ -553,7 +553,7 @@ def test_an_own_choice_that_only_hydra_reads_can_be_added(tmp_path):
     file.write_text(text)
     with listing.own(tmp_path):
         assert simple("+course=mine") == ("+course", "mine")
-        assert choosing.composed([simple("+course=mine")]) is None
+        assert composing.composed([simple("+course=mine")]) is None
         assert load(["+course=mine"]).behaviour.course.schedule == ((1.0, 5.0),)
 
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import FACING
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
 from rotctl.maths.rotations import rotate

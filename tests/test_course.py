@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.rolling.course import Course, Going, PathSettings, RatesSettings
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
 from rotctl.maths.rotations import about_up, rotate
 from rotctl.mechanics import excursion

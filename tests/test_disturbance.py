@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from questions import look_at
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.kinds import KINDS
 from rotctl.errors import InputError
 from rotctl.mechanics.disturbance import OnePush

@@ -7,8 +7,8 @@ from here import swept
 
 from rotctl.choices.listing import shipped
 from rotctl.choices.overrides import parsed
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.criteria.judge import COLUMNS

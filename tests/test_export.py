@@ -10,7 +10,7 @@ import pytest
 from captures import adult
 from scipy.spatial.transform import Rotation
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.export.mjcf import mjcf
 from rotctl.export.movement import movement
 from rotctl.log import RunLog
@@ -185,7 +185,7 @@ def test_a_gltf_moves_as_the_run_did(log, exported):
 
 @pytest.mark.parametrize("terrain", ["stairs_up", "uneven", "obstacles"])
 def test_the_triangles_of_a_gltf_face_outward(tmp_path, terrain):
-    from rotctl.config.config import load
+    from rotctl.config.loading import load
     from rotctl.export.meshes import mesh_of
     from rotctl.runs.scenario import model_of
 

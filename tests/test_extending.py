@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 import yaml
 
-from rotctl.config.config import composed
+from rotctl.config.loading import composed
 from rotctl.config.schema import check
 from rotctl.control import Controller, compiled, kinds
 from rotctl.control.settings import TaskGains

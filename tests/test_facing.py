@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import FACING
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.mechanics.state import read
 from rotctl.runs import scenario
 from rotctl.simulation.start import Start, place

@@ -12,7 +12,7 @@ import pytest
 from here import without_processes
 
 from rotctl import files
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.errors import InputError
 from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space

@@ -9,7 +9,7 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH

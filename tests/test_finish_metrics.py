@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from test_rolling_metrics import CRITERIA, PERIOD, make_log
 
-from rotctl.config.config import load
-from rotctl.metrics.criteria.early import too_short
+from rotctl.config.loading import load
+from rotctl.metrics.criteria.early_end import too_short
 from rotctl.metrics.criteria.finish import FinishCriteria, judge, rolled, upright
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.runs.scenario import build

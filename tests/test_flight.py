@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from flights import ARCHED, HEAD_FIRST, LEFT, LONG, TUCK, flier, fly, spawn
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics.shape import Shapes
 from rotctl.motion import make_pose

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.maths.rotations import rotate
 from rotctl.metrics.criteria.flip import FlipCriteria, longest_flight, measure, turn
 from rotctl.metrics.criteria.flip import judge as judge_flip

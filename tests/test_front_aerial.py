@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics.criteria.flip import judge, longest_flight, measure
 from rotctl.metrics.touching import touch_downs
 from rotctl.runs.run import in_memory

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.standing.gathering import Beside
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.task import TASK
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

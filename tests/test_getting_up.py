@@ -10,11 +10,11 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import lying
+from rotctl.behaviours.staged.conditions import Low
 from rotctl.behaviours.staged.placing import Above, Opposite
 from rotctl.behaviours.staged.posing import ReachSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
-from rotctl.behaviours.staged.until import Low
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.kinds import kind
 from rotctl.control.task import task
 from rotctl.mechanics.state import read

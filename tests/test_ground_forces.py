@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.mechanics.contacts import read_contacts
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

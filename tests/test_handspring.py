@@ -10,7 +10,7 @@ import pytest
 from rotctl.behaviours.aerial.landing import Landing
 from rotctl.behaviours.staged.posing import TurnSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics.criteria.acrobatic import AcrobaticCriteria, judge, out_of_order, told
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs

@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 
+from rotctl.behaviours.staged.conditions import Over
 from rotctl.behaviours.staged.posing import GlideSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
-from rotctl.behaviours.staged.until import Over
 from rotctl.behaviours.standing.poising import Shift, _hands, _over
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.task import TASK
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.state import read

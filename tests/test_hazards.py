@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import Controller, compiled
 from rotctl.log import RunLog
 from rotctl.mechanics.bodies import is_character

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 

@@ -8,7 +8,7 @@ import pytest
 from here import swept, without_processes
 from test_summarise import change
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.report.site import build
 from rotctl.results.table import table
 

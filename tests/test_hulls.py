@@ -12,7 +12,7 @@ from test_adopt import BRICK, stl, text
 from rotctl.adopting import adopt
 from rotctl.adopting.meshes import outermost
 from rotctl.behaviours import support
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.export.meshes import mesh_of
 from rotctl.mechanics.bodies import lowest_and_highest
@@ -22,8 +22,8 @@ from rotctl.report import shapes
 from rotctl.report.prints import outlines
 from rotctl.runs.run import make
 from rotctl.runs.scenario import build
-from rotctl.settings.checked import checked
-from rotctl.settings.written import to_dict
+from rotctl.settings.checking import checked
+from rotctl.settings.writing import to_dict
 
 HULLS = "character={kind: mjcf, file: robot.xml, collision: hulls}"
 FEET = ("foot_l", "foot_r")

@@ -11,9 +11,9 @@ from PIL import Image
 from scipy.spatial.transform import Rotation
 
 from rotctl.choices.listing import conf_dir
-from rotctl.cli.cli import main
 from rotctl.cli.clip_wording import _clock
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.motion import load_clip
 from rotctl.motion.flight import ADULT_LEG, Flight, flights
 from rotctl.motion.importing import import_motion

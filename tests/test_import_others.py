@@ -8,8 +8,8 @@ import pytest
 from captures import adult, bvh_text, in_order
 from scipy.spatial.transform import Rotation
 
-from rotctl.cli.cli import main
 from rotctl.cli.clip_wording import import_warnings
+from rotctl.cli.main import main
 from rotctl.errors import InputError
 from rotctl.motion.capture import Y_UP_FACING_Z
 from rotctl.motion.glance import turning

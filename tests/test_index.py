@@ -7,7 +7,7 @@ import zlib
 import pytest
 from here import Here, swept
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.log import RunLog
 from rotctl.results import index
 from rotctl.results.table import table

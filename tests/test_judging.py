@@ -9,9 +9,9 @@ from here import Here, swept, without_processes
 from sweep_cli import logs
 
 from rotctl.choices.listing import choices
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
 from rotctl.config.identity import run_id
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.criteria import judge as metrics

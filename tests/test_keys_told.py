@@ -2,7 +2,7 @@
 
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build
 

@@ -11,13 +11,13 @@ from logs import changed as with_arrays
 from scipy.spatial.transform import Rotation
 
 from rotctl.choices import listing
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.runs.recorded_start import make
 from rotctl.runs.scenario import build
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.simulation.clearance import clearance
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.known import Known, StateSettings, pitch

@@ -3,7 +3,7 @@
 import pytest
 
 from rotctl.choices.listing import own
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.sweep.points import points
 

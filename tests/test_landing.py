@@ -6,7 +6,7 @@ import pytest
 
 from rotctl.behaviours.aerial.landing import Landing
 from rotctl.behaviours.support import ends, middle
-from rotctl.config.config import composed, load
+from rotctl.config.loading import composed, load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory

@@ -12,7 +12,7 @@ import pytest
 from exact import Polished, written_out
 from questions import any_task, look_at, with_tasks
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import condensed
 from rotctl.control.kinds import KINDS
 from rotctl.qp.active_set import ActiveSet

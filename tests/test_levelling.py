@@ -6,7 +6,7 @@ import pytest
 from flights import ARCHED, HEAD_FIRST, LONG, TUCK, flier, spawn
 
 from rotctl.behaviours.aerial.levelling import Ahead, Levelled, _solved
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria import dive
 from rotctl.motion import make_pose
@@ -131,7 +131,7 @@ def test_levelling_is_of_turns_about_left():
 
 
 def _pirouette_with_arms():
-    from rotctl.config.config import composed
+    from rotctl.config.loading import composed
     from rotctl.config.schema import check
 
     data = composed(["behaviour=pirouette"])

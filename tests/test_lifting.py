@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from both import along
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import Controller, compiled
 from rotctl.errors import InputError
 from rotctl.log import read_attributes

@@ -7,13 +7,13 @@ import h5py
 import numpy as np
 import pytest
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.errors import LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import SCHEMA_VERSION, names_of
-from rotctl.meant import meant
 from rotctl.report import stored_model
 from rotctl.report.signals import linear_rates, signals
+from rotctl.suggestion import meant
 
 NEWER = {
     "trajectory/ground_height",

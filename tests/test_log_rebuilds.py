@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.choices.listing import choices
-from rotctl.config.config import load, recorded
+from rotctl.config.loading import load, recorded
 from rotctl.log import RunLog
 from rotctl.mechanics.model import acting
 from rotctl.report import stored_model

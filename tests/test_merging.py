@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import compiled
 from rotctl.errors import InputError
 from rotctl.mechanics.contacts import Contacts, contact_jacobian, read_contacts

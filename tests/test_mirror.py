@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.motion.mirror import symmetric
 from rotctl.motion.turning import Motion
 from rotctl.runs.scenario import model_of

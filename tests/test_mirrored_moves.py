@@ -6,7 +6,7 @@ Nothing of a law may know left from right: what one side does better is in the d
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.motion.sides import other_side, sign_of
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode

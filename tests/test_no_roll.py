@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics.criteria.rolling import measure
 from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.runs.run import in_memory

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.rolling import obliqueness
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

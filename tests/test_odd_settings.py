@@ -6,7 +6,7 @@ from typing import get_args, get_type_hints
 import pytest
 
 from rotctl.behaviours.staged.aims import Aim
-from rotctl.config.config import composed
+from rotctl.config.loading import composed
 from rotctl.config.schema import check
 from rotctl.control.kinds import KINDS
 from rotctl.errors import LONGEST, InputError, LogError

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.standing.pivoting import Bring, Escapes
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.task import TASK
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id

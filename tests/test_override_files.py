@@ -7,10 +7,10 @@ from test_adopt import text
 from rotctl import api
 from rotctl.choices.override_files import _text, blamed, expanded
 from rotctl.choices.overrides import parsed
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 
 @pytest.fixture(autouse=True)

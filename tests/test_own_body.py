@@ -9,12 +9,12 @@ from test_adopt import text
 
 from rotctl.choices import listing
 from rotctl.choices.listing import own
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.run import make, run
 from rotctl.runs.scenario import build
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 INLINE = "character={kind: mjcf, file: robot.xml}"
 

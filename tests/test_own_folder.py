@@ -11,8 +11,8 @@ from rotctl import api
 from rotctl.choices import listing
 from rotctl.choices.listing import conf_dir, named_file
 from rotctl.choices.own_folder import kinds, make
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.motion import load_clip
 from rotctl.results import experiments

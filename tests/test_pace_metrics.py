@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rotctl.cli.wording import readable
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics.criteria.judge import settling
 from rotctl.metrics.pace import measure, off
 

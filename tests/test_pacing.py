@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.rolling.pacing import SLIP, Clock, Pace, PaceSettings
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.judge import judge
 from rotctl.runs.run import in_memory

@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics import pair_limit

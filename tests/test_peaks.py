@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics import peaks
 from rotctl.metrics.criteria import dive, flip
 from rotctl.runs.run import in_memory

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation import pgs

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.aerial.flight import Flight
 from rotctl.behaviours.facing import frame_of
-from rotctl.config.config import composed, load
+from rotctl.config.loading import composed, load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.flip import judge, longest_flight, turn

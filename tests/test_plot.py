@@ -8,8 +8,8 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import plot as module

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.motion import Poses, make_pose, make_pose_pair
 

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from rotctl.cli.wording import readable
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics.onset import Onset
 from rotctl.metrics.criteria.judge import judge

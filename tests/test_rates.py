@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 

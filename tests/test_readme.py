@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import readme_sample
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.log import RunLog
 from rotctl.log.provenance import libm
 from rotctl.native import library

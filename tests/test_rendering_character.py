@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.mechanics.bodies import lowest_and_highest
 from rotctl.mechanics.model import build
 from rotctl.report import gl

@@ -9,7 +9,7 @@ import pytest
 from logs import changed
 from PIL import Image
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.log import RunLog
 from rotctl.report import stored_model
 from rotctl.report.replay import replay

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from logs import changed
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.report import stored_model

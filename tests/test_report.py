@@ -15,7 +15,7 @@ import pytest
 from here import swept
 from logs import changed
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.metrics.claims import Claim, judge

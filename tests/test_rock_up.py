@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rotctl.behaviours.staged.until import Leant
-from rotctl.config.config import load
+from rotctl.behaviours.staged.conditions import Leant
+from rotctl.config.loading import load
 from rotctl.config.schema import changed
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge

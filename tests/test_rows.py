@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import FACING
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics import appearance
 from rotctl.metrics.criteria.rolling import measure

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog
+from rotctl.runs.folder import SUMMARY_NAME
 from rotctl.runs.run import LOG_NAME, run
-from rotctl.runs.run_folder import SUMMARY_NAME
 from rotctl.runs.scenario import build
 
 LOOKS = [
@@ -416,7 +416,7 @@ def test_a_run_imports_no_more_than_it_needs(tmp_path):
     heavy = ("hydra", "omegaconf", "scipy", "pandas", "matplotlib", "PIL", "glfw", "osqp", "jinja2")
     code = (
         "import sys\n"
-        "from rotctl.cli.cli import main\n"
+        "from rotctl.cli.main import main\n"
         f"main(['run', 'duration=0.1', 'behaviour=stand', '--quiet', '--out', {str(tmp_path)!r}])\n"
         f"print([name for name in {heavy} if name in sys.modules])\n"
     )

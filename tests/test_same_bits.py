@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotctl.config.config import composed
+from rotctl.config.loading import composed
 from rotctl.log import collect
 from rotctl.native import library
 from rotctl.results import experiments

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotctl.choices.listing import conf_dir
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build
 

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 TINY = 1e-9  # of any number in the log; in so short a run rounding makes 1e-13
 NAMES = (

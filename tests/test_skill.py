@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.log import LOG_NAME, RunLog
 from rotctl.report.frame import moments, turns_done
 from rotctl.report.skill import parts

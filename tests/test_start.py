@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.behaviour import Placement
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.maths.rotations import advance
 from rotctl.mechanics.bodies import lowest_and_highest

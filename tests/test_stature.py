@@ -9,14 +9,14 @@ import pytest
 
 from rotctl.behaviours.aerial.launch import Launch, Whirl
 from rotctl.behaviours.chain.ways import Posture
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
-from rotctl.behaviours.similar import UNITS
-from rotctl.behaviours.similar import similar as asking
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.behaviours.similarity import UNITS
+from rotctl.behaviours.similarity import similar as asking
 from rotctl.behaviours.staged.aims import Aim
-from rotctl.behaviours.staged.until import Until
+from rotctl.behaviours.staged.conditions import Until
 from rotctl.behaviours.standing.wheeling import Carry, Place, Stride
-from rotctl.config.config import load
-from rotctl.control.similar import similar
+from rotctl.config.loading import load
+from rotctl.control.similarity import similar
 from rotctl.errors import InputError
 from rotctl.mechanics.stature import Likeness, grown, likeness
 from rotctl.runs.run import in_memory, make

@@ -11,8 +11,8 @@ import pytest
 from here import swept
 from scipy.stats import norm
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson

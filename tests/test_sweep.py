@@ -10,16 +10,16 @@ import pytest
 from here import Here, without_processes
 from sweep_cli import logs, published
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
 from rotctl.config.identity import run_id
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, RunLog, collect, encode_run
 from rotctl.results.code import code_version
 from rotctl.results.manifest import read
 from rotctl.runs import scenario
+from rotctl.runs.folder import publish
 from rotctl.runs.run import make
-from rotctl.runs.run_folder import publish
 from rotctl.sweep.launch import launch, tally
 from rotctl.sweep.lock import locked
 from rotctl.sweep.plan import plan, planned

@@ -15,7 +15,7 @@ import sweep_tasks
 from here import swept
 from sweep_cli import PATIENCE, finish, kill, logs, published, start, until
 
-from rotctl.cli.cli import main
+from rotctl.cli.main import main
 from rotctl.errors import InputError, RotctlError
 from rotctl.log import RunLog
 from rotctl.sweep import cluster as cluster_module

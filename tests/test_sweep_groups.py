@@ -3,7 +3,7 @@
 import pytest
 from here import Here
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.groups import results, sizes
 from rotctl.sweep.task import carry_out, ordered

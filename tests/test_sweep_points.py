@@ -5,8 +5,8 @@ from importlib import import_module
 import pytest
 
 from rotctl.choices.listing import choices
-from rotctl.config import config
-from rotctl.config.config import load
+from rotctl.config import loading
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.sweep.assignments import quickly
 from rotctl.sweep.points import points
@@ -149,7 +149,7 @@ def test_what_is_wrong_is_said_before_anything_runs(grid, message):
 def test_what_does_not_change_is_composed_and_checked_once(monkeypatch):
     """Of 3000 points only what is set is checked, each value once: hours of planning otherwise."""
     module, loaded = import_module("rotctl.sweep.points"), []
-    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or loading.load(o))
     grid = ["start=rest,tucked", "controller.pose.weight=1,2,3", "seed=range(0,500)"]
     found = list(points([grid]))
     assert len(found) == 3000
@@ -161,7 +161,7 @@ def test_what_does_not_change_is_composed_and_checked_once(monkeypatch):
 @pytest.mark.parametrize("added", ["+course=circle,turn", "+course=choice(circle,turn)"])
 def test_what_is_added_is_composed_once(monkeypatch, added):
     module, loaded = import_module("rotctl.sweep.points"), []
-    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or loading.load(o))
     assert len(list(points([["behaviour=forward_roll", added, "seed=range(0,50)"]]))) == 100
     assert loaded == [["behaviour=forward_roll", f"+course={name}"] for name in ("circle", "turn")]
 
@@ -169,13 +169,13 @@ def test_what_is_added_is_composed_once(monkeypatch, added):
 @pytest.mark.parametrize("out", ["~behaviour.catch", "behaviour.catch=null"])
 def test_what_is_left_out_is_composed_once_for_all_that_is_elsewhere(monkeypatch, out):
     module, loaded = import_module("rotctl.sweep.points"), []
-    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or config.load(o))
+    monkeypatch.setattr(module, "load", lambda o: loaded.append(o) or loading.load(o))
     grid = ["behaviour=forward_roll_2", out, "behaviour.heading=0,10", "seed=1,2"]
     found = list(points([grid]))
     for_both = [[*grid[:2], f"behaviour.heading={value}"] for value in (0, 10)]
     assert [texts for texts in loaded if len(texts) > 1] == for_both
     for point in found:
-        assert point.config == config.load(list(point.overrides))
+        assert point.config == loading.load(list(point.overrides))
         assert point.config.behaviour.catch is None
 
 

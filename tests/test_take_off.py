@@ -4,7 +4,7 @@ import pytest
 
 from rotctl.behaviours.aerial.launch import Launch
 from rotctl.behaviours.staged.take_off import at_speed
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.flip import judge
 from rotctl.runs.run import in_memory

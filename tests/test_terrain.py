@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -17,7 +17,7 @@ from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
 from rotctl.runs.run import LOG_NAME, in_memory, run
 from rotctl.runs.scenario import build, model_of
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.loop import simulate
 

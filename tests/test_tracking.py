@@ -12,7 +12,7 @@ import pytest
 from questions import Asking
 from scipy.spatial.transform import Rotation
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control.kinds import KINDS
 from rotctl.control.settings import TaskGains
 from rotctl.control.task import task

@@ -6,7 +6,7 @@ from math import cos, isnan, nan, pi, radians, sin
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
 from rotctl.metrics.expressions.expression import read

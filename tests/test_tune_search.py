@@ -12,8 +12,8 @@ import yaml
 from sweep_cli import held_after, kill
 
 from rotctl.choices import listing
-from rotctl.cli.cli import main
-from rotctl.config import config
+from rotctl.cli.main import main
+from rotctl.config import loading
 from rotctl.errors import InputError, RotctlError
 from rotctl.runs.run import run
 from rotctl.sweep.engines import Failure
@@ -196,8 +196,8 @@ def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypat
     for path in written:
         shutil.copy(path, copied / path.parent.name)
     monkeypatch.setattr(listing, "conf_dir", lambda: copied)
-    monkeypatch.setattr(config, "conf_dir", lambda: copied)
-    chosen = config.load(["behaviour=small_tuned", "controller=small_tuned", "duration=0.25"])
+    monkeypatch.setattr(loading, "conf_dir", lambda: copied)
+    chosen = loading.load(["behaviour=small_tuned", "controller=small_tuned", "duration=0.25"])
     best = found.candidates[0].values
     assert chosen.behaviour.poses.a["knee"] == best["behaviour.poses.a.knee"]
     assert chosen.controller.tasks["linear"].damping[0] == best["controller.tasks.linear.damping.0"]
@@ -213,9 +213,9 @@ def test_a_result_brings_what_its_behaviour_brings(whole, tmp_path):
     (tmp_path / "behaviour").mkdir()
     (tmp_path / "behaviour" / "small_tuned.yaml").write_text(made["behaviour"])
     with listing.own(tmp_path):
-        chosen = config.load(["behaviour=small_tuned"])
-        assert chosen.terrain == config.load(["behaviour=steep"]).terrain
-        assert config.load(["behaviour=small_tuned", "terrain=flat"]).terrain.name == "flat"
+        chosen = loading.load(["behaviour=small_tuned"])
+        assert chosen.terrain == loading.load(["behaviour=steep"]).terrain
+        assert loading.load(["behaviour=small_tuned", "terrain=flat"]).terrain.name == "flat"
     assert "defaults" not in yaml.safe_load(made["controller"])
 
 
@@ -265,7 +265,7 @@ def test_what_is_printed_to_judge_a_result_can_be_pasted(whole, tmp_path):
         assert [line.count("mkdir") for line in copies] == [1, 0]
         for line in copies:
             subprocess.run(line, shell=True, check=True)
-        chosen = config.load(["behaviour=small_tuned", "controller=small_tuned"])
+        chosen = loading.load(["behaviour=small_tuned", "controller=small_tuned"])
         assert chosen.behaviour.name == "small_tuned"
         assert "mkdir" not in result.how_to_judge(whole, written, folder)
 

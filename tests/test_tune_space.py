@@ -7,10 +7,10 @@ import pytest
 import yaml
 
 from rotctl.choices.listing import conf_dir
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.expressions.expression import NAMES
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (
     configs,

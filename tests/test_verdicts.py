@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.metrics.criteria import orientation, standing
 
 PERIOD = 1.0 / 60.0

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from logs import changed
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load, recorded
+from rotctl.cli.main import main
+from rotctl.config.loading import load, recorded
 from rotctl.errors import LogError
 from rotctl.log import RunLog
-from rotctl.runs import verify as verifying
+from rotctl.runs import repetition as verifying
+from rotctl.runs.repetition import repeat
 from rotctl.runs.run import make
-from rotctl.runs.verify import repeat
 
 ROWS = 30
 

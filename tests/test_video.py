@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from rotctl.cli.cli import main
-from rotctl.config.config import load
+from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.report import encoder

@@ -7,7 +7,7 @@ import pytest
 
 from rotctl.behaviours.rolling.pacing import Pace
 from rotctl.behaviours.rolling.waiting import Waiting
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

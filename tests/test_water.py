@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.disturbance import Nothing, OnePush
 from rotctl.mechanics.water import Water

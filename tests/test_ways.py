@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.chain.ways import FaceDown, Rolls, Way
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge
 from rotctl.runs.run import in_memory

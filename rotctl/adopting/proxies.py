@@ -7,8 +7,8 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
+from rotctl.engine import quiet
 from rotctl.errors import InputError
-from rotctl.quiet import quiet
 
 _NAMED = 30  # of the valid ones, in a complaint
 

@@ -4,9 +4,9 @@ from typing import Annotated
 
 from pydantic import Field
 
-from rotctl.behaviours.chain.chain_settings import ChainSettings
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
-from rotctl.behaviours.staged.staged_settings import StagedSettings
+from rotctl.behaviours.chain.settings import ChainSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.behaviours.staged.settings import StagedSettings
 
 BehaviourSettings = Annotated[
     RollingSettings | StagedSettings | ChainSettings, Field(discriminator="kind")

@@ -8,7 +8,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.runs.scenario import build, shared
 from rotctl.simulation.loop import simulate
 

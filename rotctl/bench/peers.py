@@ -20,7 +20,7 @@ import mujoco
 import numpy as np
 
 from rotctl.bench.states import Recorded, record_roll, restore
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import Controller
 from rotctl.control.cone import friction_rows
 from rotctl.control.pose import PoseTracker

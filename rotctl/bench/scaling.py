@@ -16,7 +16,7 @@ import numpy as np
 
 from rotctl import files
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.config.schema import Config
 from rotctl.control import Command, Controller
 from rotctl.errors import InputError

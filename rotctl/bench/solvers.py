@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from rotctl.bench.states import Recorded, record_roll, restore
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import Controller
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array

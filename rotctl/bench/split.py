@@ -10,7 +10,7 @@ from functools import partial
 from itertools import islice
 from statistics import median
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.control import Controller
 from rotctl.log import TrajectoryBuffer
 from rotctl.maths.rotations import Array

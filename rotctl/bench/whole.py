@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 from mujoco import rollout
 
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.log import TrajectoryBuffer
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model

@@ -14,8 +14,8 @@ from typing import Any
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.meant import meant
 from rotctl.settings import documents, plain
+from rotctl.suggestion import meant
 
 OWN = "ROTCTL_CONFIG_DIR"
 EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl

@@ -12,11 +12,11 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import ChoiceSweep, Glob, Override, OverrideType, Sweep
 from hydra.errors import HydraException
 
-from rotctl.choices.choosing import MISSING, Assignment
+from rotctl.choices.composing import MISSING, Assignment
 from rotctl.choices.listing import choices, conf_dir
 from rotctl.errors import InputError
-from rotctl.meant import instead_of_many
-from rotctl.settings.checked import brief, clip
+from rotctl.settings.checking import brief, clip
+from rotctl.suggestion import instead_of_many
 
 LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte
 LONGEST_KEY = 200

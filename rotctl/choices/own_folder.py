@@ -14,8 +14,8 @@ from rotctl.choices.listing import (
     own_dir,
 )
 from rotctl.errors import InputError
-from rotctl.meant import instead
 from rotctl.settings import documents
+from rotctl.suggestion import instead
 
 MARKED = """\
 # Your own configs for rotctl: behaviour/, character/, terrain/, start/, ..., clips in motion/,

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rotctl.choices import choosing, listing
+from rotctl.choices import composing, listing
 from rotctl.errors import RotctlError
 from rotctl.settings import plain
 
@@ -118,5 +118,5 @@ def _keys(begun: str, before: list[str]) -> Iterable[str]:
 
 def _config(before: list[str]) -> dict[str, Any]:
     """The config that the choices so far make; empty where Hydra would have to be asked."""
-    chosen = [one for one in map(choosing.simple, before) if one and listing.choices(one.key)]
-    return choosing.composed(chosen) or {}
+    chosen = [one for one in map(composing.simple, before) if one and listing.choices(one.key)]
+    return composing.composed(chosen) or {}

@@ -11,7 +11,7 @@ from rotctl import __version__
 from rotctl.cli.commands import clips, completion, folders, logs, runs, searches, studies
 from rotctl.cli.wording import one_line
 from rotctl.errors import bounded
-from rotctl.meant import instead, meant
+from rotctl.suggestion import instead, meant
 
 EPILOG = """\
 examples:

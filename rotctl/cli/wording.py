@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rotctl.adopting import Adopted
     from rotctl.log import RunLog
-    from rotctl.runs.verify import Repetition
+    from rotctl.runs.repetition import Repetition
 
 
 STILL = 0.05  # [rev, rev/s] less is no rolling

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from functools import cache
 
 from rotctl.behaviours import BehaviourSettings
-from rotctl.behaviours.chain.chain_settings import ChainSettings
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+from rotctl.behaviours.chain.settings import ChainSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.placing import Watch
-from rotctl.behaviours.staged.staged_settings import StagedSettings
-from rotctl.choices import choosing
+from rotctl.behaviours.staged.settings import StagedSettings
+from rotctl.choices import composing
 from rotctl.choices.listing import content, shipped_files
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
@@ -20,8 +20,8 @@ from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
-from rotctl.settings.checked import brief
-from rotctl.settings.settings import Vector, ends
+from rotctl.settings.checking import brief
+from rotctl.settings.fields import Vector, ends
 
 ROUNDING = 1e-9  # [s]
 
@@ -105,7 +105,7 @@ def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None
 @cache
 def _easing(name: str) -> float | None:
     """Of the pace of a behaviour that comes with rotctl [m/s]."""
-    made = choosing.composed([choosing.Assignment("behaviour", name)])
+    made = composing.composed([composing.Assignment("behaviour", name)])
     pace = made["behaviour"].get("pace") if made else None
     return pace.get("easing") if pace else None
 

@@ -7,13 +7,13 @@ from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
 
-from rotctl.behaviours.chain.chain_settings import ChainSettings
+from rotctl.behaviours.chain.settings import ChainSettings
+from rotctl.caching import kept
 from rotctl.config.schema import Config
 from rotctl.log import SCHEMA_VERSION
 from rotctl.mechanics.model import Model
 from rotctl.motion import ReferenceSettings, load_clip
-from rotctl.same import kept
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 DESCRIPTIVE = ("description", "source", "colour", "found_for", "said")
 

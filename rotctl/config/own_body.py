@@ -13,12 +13,12 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.choices.choosing import simple
+from rotctl.choices.composing import simple
 from rotctl.choices.listing import choices, content, is_own, named_file, shipped_files
 from rotctl.errors import InputError
 from rotctl.settings import plain
-from rotctl.settings.checked import checked, unknown_key
-from rotctl.settings.settings import STRICT
+from rotctl.settings.checking import checked, unknown_key
+from rotctl.settings.fields import STRICT
 
 GROUP = "character"
 

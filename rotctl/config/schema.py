@@ -9,6 +9,7 @@ from pydantic import Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import BehaviourSettings
+from rotctl.caching import kept
 from rotctl.control import ControllerSettings
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
@@ -18,12 +19,11 @@ from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.criteria.judge import Criteria
-from rotctl.same import kept
-from rotctl.settings.checked import brief, checked, clip
+from rotctl.settings.checking import brief, checked, clip
 from rotctl.settings.documents import UNPRINTABLE
+from rotctl.settings.fields import STRICT, Positive
 from rotctl.settings.plain import Way, dotted, leaves
-from rotctl.settings.settings import STRICT, Positive
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.simulation.start import StartSettings
 
 PROSE = ("description", "source", "said")  # may be long

@@ -18,9 +18,9 @@ from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, rotation_to
-from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
+from rotctl.suggestion import instead
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.control.supervisor import SupervisorName, Thresholds
 from rotctl.mechanics.merging import Merging
-from rotctl.settings.settings import STRICT, NonNegative, NonNegativeVector, Positive
+from rotctl.settings.fields import STRICT, NonNegative, NonNegativeVector, Positive
 
 FormName = Literal["condensed", "literal"]
 BackendName = Literal["compiled", "reference"]

@@ -17,7 +17,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
 from rotctl.qp import make_solver, without_rows
-from rotctl.settings.settings import STRICT, Fraction, NonNegative
+from rotctl.settings.fields import STRICT, Fraction, NonNegative
 
 SupervisorName = Literal[
     "as_written", "modified", "minimal", "convex_hull", "simulated", "simulated_free", "none"

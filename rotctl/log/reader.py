@@ -14,7 +14,7 @@ from rotctl.log import untrusted
 from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.outcome import outcome_of
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
-from rotctl.meant import meant
+from rotctl.suggestion import meant
 
 
 def read_attributes(path: str | Path, *, linked: bool) -> dict[str, bool | int | float | str]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.errors import InputError
-from rotctl.meant import meant
 from rotctl.mechanics.hulls import hulls, places
+from rotctl.suggestion import meant
 
 ROOT_BODY = 1  # MuJoCo's id: the character is the first tree
 SIDES = ("_l", "_r")  # how names of limbs end

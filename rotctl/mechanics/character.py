@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
-from rotctl.settings.settings import (
+from rotctl.settings.fields import (
     SPARSE,
     STRICT,
     Finite,

@@ -20,7 +20,7 @@ from rotctl.mechanics.changes import Load, Slip
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import SHORTEST, Onset, Phase, Time, far_from
 from rotctl.mechanics.wind import Wind
-from rotctl.settings.settings import STRICT, Drawn, NonNegative, Positive, ends
+from rotctl.settings.fields import STRICT, Drawn, NonNegative, Positive, ends
 
 DISTURBANCE_STREAM = 2  # beside the start's, which is drawn from the seed alone, and the terrain's
 

@@ -34,7 +34,7 @@ from rotctl.maths.rotations import (
     rotated,
     rotation_between,
 )
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 ExcursionName = Literal["oriented", "integral", "root", "clock"]
 

@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 import mujoco
 
 from rotctl import files
+from rotctl.engine import quiet
 from rotctl.errors import InputError
-from rotctl.quiet import quiet
 
 MAX_BYTES = 4_000_000
 MAX_ELEMENTS = 20_000

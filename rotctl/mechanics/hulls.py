@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 
+from rotctl.caching import kept
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
-from rotctl.same import kept
 
 
 @kept(most=8)

@@ -16,7 +16,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.contacts import Contacts
-from rotctl.settings.settings import STRICT, NonNegative
+from rotctl.settings.fields import STRICT, NonNegative
 
 
 @validated(frozen=True, config=STRICT)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
-from rotctl.meant import instead
 from rotctl.mechanics import pair_limit
 from rotctl.mechanics.bodies import (
     ROOT_BODY,
@@ -29,6 +28,7 @@ from rotctl.mechanics.character import Character, add_character
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.stature import grown
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
+from rotctl.suggestion import instead
 
 ROOT_DOFS = 6
 TERRAIN_STREAM = 1  # the start is drawn from the seed alone, the terrain from this beside it

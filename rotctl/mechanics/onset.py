@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
-from rotctl.settings.settings import Drawn, ends
+from rotctl.settings.fields import Drawn, ends
 
 
 def _from_the_start(time: float | tuple[float, float]) -> float | tuple[float, float]:

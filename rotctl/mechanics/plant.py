@@ -12,10 +12,10 @@ import numpy as np
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.engine import quiet
 from rotctl.maths.rotations import Array, advance
 from rotctl.mechanics.model import Model
-from rotctl.quiet import quiet
-from rotctl.settings.settings import STRICT, NonNegative, Range
+from rotctl.settings.fields import STRICT, NonNegative, Range
 
 PLANT_STREAM = 3  # beside those of the start, the terrain and the disturbance
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from math import sqrt
 
 from rotctl.mechanics.character import Body, Character, Drawn, Geom, Joint
-from rotctl.settings.settings import Vector
+from rotctl.settings.fields import Vector
 
 
 @dataclass(frozen=True)

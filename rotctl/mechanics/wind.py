@@ -14,7 +14,7 @@ from rotctl.mechanics.bodies import ROOT_BODY, is_character
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import SHORTEST, Time, far_from
-from rotctl.settings.settings import STRICT, Drawn, NonNegative, Positive, ends
+from rotctl.settings.fields import STRICT, Drawn, NonNegative, Positive, ends
 
 
 @validated(frozen=True, config=STRICT)

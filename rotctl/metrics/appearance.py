@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import mujoco
 import numpy as np
 
+from rotctl.caching import kept
 from rotctl.maths.rotations import Array
 from rotctl.metrics import across
 from rotctl.metrics.across import BEARING, HEAD, SIDES, at_hands
@@ -13,7 +14,6 @@ from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.loads import loads
 from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
-from rotctl.same import kept
 
 COLUMNS = (
     Column("head_share", "Head's share of the ground's upward impulse", ""),

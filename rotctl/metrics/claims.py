@@ -9,7 +9,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.rates import wilson
-from rotctl.settings.settings import STRICT, Finite, NonNegative
+from rotctl.settings.fields import STRICT, Finite, NonNegative
 
 if TYPE_CHECKING:  # pandas takes half a second, and who plans a sweep needs none
     import pandas as pd

@@ -14,9 +14,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.caching import kept
 from rotctl.maths.rotations import Array
 from rotctl.native import library
-from rotctl.same import kept
 
 ROUND = int(mujoco.mjtGeom.mjGEOM_CAPSULE), int(mujoco.mjtGeom.mjGEOM_SPHERE)
 

@@ -17,8 +17,8 @@ from rotctl.motion.clip import Clip, RollAbout
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.turning import Motion, rolled_by, upright
 from rotctl.motion.writing import make_clip
-from rotctl.settings import checked
-from rotctl.settings.settings import STRICT, Finite, Vector
+from rotctl.settings import checking
+from rotctl.settings.fields import STRICT, Finite, Vector
 
 DENSE = 720  # postures between the key poses, of which AE is measured
 
@@ -63,7 +63,7 @@ def load_keys(path: Path) -> Keys:
     Raises:
         InputError: one line that names the file, the bad value and what is valid.
     """
-    return checked.read(Keys, path, linked=True)
+    return checking.read(Keys, path, linked=True)
 
 
 def author(model: Model, keys: Keys, character: str) -> Clip:

@@ -18,10 +18,10 @@ from rotctl import files
 from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
-from rotctl.meant import instead
 from rotctl.mechanics.model import Model
-from rotctl.settings import checked, documents
-from rotctl.settings.settings import STRICT, Finite
+from rotctl.settings import checking, documents
+from rotctl.settings.fields import STRICT, Finite
+from rotctl.suggestion import instead
 
 MAX_SAMPLES = 3600
 MAX_JOINTS = 500
@@ -117,4 +117,4 @@ def _read(path: Path) -> Clip:
 
 @lru_cache(maxsize=8)  # all runs of a sweep ask for the same text, and parsing it takes a while
 def _parsed(where: str, text: str) -> Clip:
-    return checked.from_yaml(Clip, where, text)
+    return checking.from_yaml(Clip, where, text)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from rotctl.errors import InputError
-from rotctl.meant import instead
+from rotctl.suggestion import instead
 
 SIDES = {"l": "left", "r": "right"}
 LEG, ARM = ("hip", "knee", "ankle"), ("shoulder", "elbow", "wrist")

@@ -15,12 +15,12 @@ import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.caching import kept
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.native.layout import constant
-from rotctl.same import kept
-from rotctl.settings.settings import STRICT, Finite
+from rotctl.settings.fields import STRICT, Finite
 
 ROUNDING = 1e-6  # [rad] of a limit that somebody copied
 Turn = Annotated[Finite, Field(ge=-10, le=10)]  # [rad]; no joint turns half as far

@@ -18,7 +18,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
-from rotctl.settings.settings import STRICT, Finite, NonNegative
+from rotctl.settings.fields import STRICT, Finite, NonNegative
 
 STEPS = 720  # of the table that `at` reads: half a degree of phase
 

@@ -13,8 +13,8 @@ from functools import cache
 from importlib import import_module, reload
 from typing import Any
 
+from rotctl.engine import VARIABLE
 from rotctl.errors import InputError
-from rotctl.headless import VARIABLE
 
 HINT = "on Debian: apt-get install libosmesa6"
 # osmesa first: in software a picture has the same bytes with and without a GPU.

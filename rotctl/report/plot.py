@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import files
-from rotctl.headless import mujoco_without_opengl
+from rotctl.engine import mujoco_without_opengl
 from rotctl.log import RunLog
 from rotctl.report import axes as draw
 from rotctl.report import character, stored_model

@@ -12,7 +12,7 @@ from pathlib import Path
 from string import Template
 
 from rotctl import __version__, files
-from rotctl.headless import mujoco_without_opengl
+from rotctl.engine import mujoco_without_opengl
 from rotctl.log import RunLog
 from rotctl.report.pack import pack
 from rotctl.report.policy import BESIDE, policy, this

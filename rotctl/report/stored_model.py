@@ -4,10 +4,10 @@ from math import prod
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
+from rotctl.engine import quiet
 from rotctl.errors import LogError
 from rotctl.log import RunLog
 from rotctl.log.schema import MODEL_PATH
-from rotctl.quiet import quiet
 
 if TYPE_CHECKING:
     import mujoco

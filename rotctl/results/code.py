@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from rotctl.caching import kept
 from rotctl.errors import LogError
-from rotctl.same import kept
 from rotctl.settings.documents import from_json
 
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 from hashlib import sha256
 from typing import Any
 
+from rotctl.caching import kept
 from rotctl.errors import InputError
-from rotctl.same import kept
 from rotctl.settings.documents import from_yaml
 
 _SEED = re.compile(r"^seed: (\d{1,19})\n", re.MULTILINE)

@@ -12,10 +12,10 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl import files
 from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
-from rotctl.meant import instead
 from rotctl.metrics.claims import Claim, Where
-from rotctl.settings import checked, documents
-from rotctl.settings.settings import STRICT
+from rotctl.settings import checking, documents
+from rotctl.settings.fields import STRICT
+from rotctl.suggestion import instead
 
 PREFIX = "+experiment="
 COPY = "experiment-{}.yaml"
@@ -80,7 +80,7 @@ def experiment(name: str) -> Experiment:
     Raises:
         InputError: there is no such experiment, or its file is wrong.
     """
-    return checked.read(Experiment, _path(name), linked=True)
+    return checking.read(Experiment, _path(name), linked=True)
 
 
 def read(path: Path) -> Experiment:
@@ -89,7 +89,7 @@ def read(path: Path) -> Experiment:
     Raises:
         InputError: it is wrong; one line that says where.
     """
-    return checked.read(Experiment, path, linked=False)
+    return checking.read(Experiment, path, linked=False)
 
 
 def copy_into(folder: Path, name: str) -> None:

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 from rotctl import files
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
-from rotctl.meant import instead
 from rotctl.metrics import appearance, pace, peaks
 from rotctl.metrics.claims import simulated
 from rotctl.metrics.criteria import rolling
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table
+from rotctl.suggestion import instead
 
 YES_OR_NO = ("recovered",)  # of many runs a share says more than a median
 # Too many for a table that people read: files have them, and a failure names its own.

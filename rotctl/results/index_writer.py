@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from rotctl import files
+from rotctl.caching import kept
 from rotctl.errors import InputError
 from rotctl.results.index import BEFORE, INDEX_NAME, LARGEST, REFERENCE, Index, Row
-from rotctl.same import kept
 
 SYNC_EVERY = 1.0  # [s] a loss of power may cost that much; a kill costs nothing
 SMALL = 200  # characters of what is not worth a name

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rotctl.log import TrajectoryBuffer, write_log
 from rotctl.runs.encoding import encoded
-from rotctl.runs.run_folder import INTERRUPTED_NAME
+from rotctl.runs.folder import INTERRUPTED_NAME
 from rotctl.runs.scenario import Scenario
 
 LONG = 60.0  # [s] simulated: what is shorter is soon simulated again

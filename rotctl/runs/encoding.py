@@ -6,10 +6,10 @@ from typing import Any
 from rotctl.log import TrajectoryBuffer, collect, encode_run
 from rotctl.log.digest import simulated
 from rotctl.log.writer import whole
-from rotctl.runs.run_folder import EncodedRun
+from rotctl.runs.folder import EncodedRun
 from rotctl.runs.scenario import Scenario
 from rotctl.runs.summary import Summary, summarise
-from rotctl.settings.written import to_yaml
+from rotctl.settings.writing import to_yaml
 
 
 def encoded(

@@ -9,13 +9,13 @@ import numpy as np
 import yaml
 
 from rotctl.choices import own_folder
-from rotctl.config.config import recorded
+from rotctl.config.loading import recorded
 from rotctl.config.schema import Config, changed
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.mechanics.model import Model
 from rotctl.runs.scenario import model_of
-from rotctl.settings.checked import brief
+from rotctl.settings.checking import brief
 from rotctl.simulation.clearance import clearance
 
 LONGEST = 1e4  # [s] no run is as long

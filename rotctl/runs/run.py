@@ -13,17 +13,17 @@ import numpy as np
 from rotctl import files
 from rotctl.config.identity import acting
 from rotctl.config.schema import Config
+from rotctl.engine import quiet
 from rotctl.errors import LogError
 from rotctl.log import LOG_NAME, SCHEMA, RunLog, TrajectoryBuffer, encode_run
 from rotctl.log.schema import MODEL_PATH
-from rotctl.quiet import quiet
 from rotctl.runs.checkpoint import Checkpoints
 from rotctl.runs.encoding import encoded
-from rotctl.runs.run_folder import EncodedRun, open_published, publish
+from rotctl.runs.folder import EncodedRun, open_published, publish
 from rotctl.runs.scenario import ANEW, Making, Scenario, build
 from rotctl.runs.summary import Summary, broke_down, judged_again
 from rotctl.settings.documents import from_yaml
-from rotctl.settings.written import to_dict, to_yaml
+from rotctl.settings.writing import to_dict, to_yaml
 from rotctl.simulation.loop import Look, nobody, simulate
 
 

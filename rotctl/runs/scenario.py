@@ -10,12 +10,13 @@ import numpy as np
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
-from rotctl.behaviours.similar import similar as asking
+from rotctl.behaviours.similarity import similar as asking
+from rotctl.caching import kept
 from rotctl.config.fit import require_fit
 from rotctl.config.identity import run_id
 from rotctl.config.schema import Config
 from rotctl.control import Controller, ControllerSettings
-from rotctl.control.similar import similar
+from rotctl.control.similarity import similar
 from rotctl.mechanics import model as models
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.excursion import ExcursionSettings
@@ -25,7 +26,6 @@ from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
-from rotctl.same import kept
 from rotctl.simulation import aloft, falling
 from rotctl.simulation import start as starts
 from rotctl.simulation.lockstep import LockstepStepper

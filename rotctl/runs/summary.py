@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from rotctl.behaviours.chain.chain_settings import ChainSettings
+from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.config.fit import require_fit
 from rotctl.config.schema import Config
 from rotctl.log import RunLog, TrajectoryBuffer

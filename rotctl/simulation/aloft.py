@@ -7,12 +7,12 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours import similar
+from rotctl.behaviours import similarity
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.settings.settings import STRICT, Finite, Fraction, Positive, Range
+from rotctl.settings.fields import STRICT, Finite, Fraction, Positive, Range
 
 
 @validated(frozen=True, config=STRICT)
@@ -45,11 +45,11 @@ class AloftSettings:
 
 
 UNITS = {
-    AloftSettings: similar.all_of(similar.length, "height", "ahead")
-    | similar.all_of(similar.speed, "speed")
-    | similar.all_of(similar.turning, "momentum"),
+    AloftSettings: similarity.all_of(similarity.length, "height", "ahead")
+    | similarity.all_of(similarity.speed, "speed")
+    | similarity.all_of(similarity.turning, "momentum"),
 }
-"""Of a start high in the air, for `rotctl.behaviours.similar`."""
+"""Of a start high in the air, for `rotctl.behaviours.similarity`."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 import mujoco
 from numpy.typing import NDArray
 
-from rotctl.behaviours.rolling.compiled_roll import CompiledRoll, put, taken
+from rotctl.behaviours.rolling.compiled import CompiledRoll, put, taken
 from rotctl.behaviours.rolling.rolling import Rolling
 from rotctl.control import Controller
 from rotctl.control.compiled import FAILED, CompiledStep

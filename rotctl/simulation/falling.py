@@ -6,13 +6,13 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours import similar
+from rotctl.behaviours import similarity
 from rotctl.behaviours.aerial.landing import Contact, Landing, LandingSettings
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import read_momentum
-from rotctl.settings.settings import STRICT, NonNegative, Range
+from rotctl.settings.fields import STRICT, NonNegative, Range
 
 SLOWEST = 0.1  # [m/s] down, for a landing
 
@@ -47,12 +47,12 @@ class FallingSettings:
 
 
 UNITS = {
-    **similar.UNITS,
-    FallingSettings: similar.all_of(similar.length, "gap", "offset")
-    | similar.all_of(similar.speed, "speed")
-    | similar.all_of(similar.turning, "momentum", "across"),
+    **similarity.UNITS,
+    FallingSettings: similarity.all_of(similarity.length, "gap", "offset")
+    | similarity.all_of(similarity.speed, "speed")
+    | similarity.all_of(similarity.turning, "momentum", "across"),
 }
-"""Of a start in the air, for `rotctl.behaviours.similar`."""
+"""Of a start in the air, for `rotctl.behaviours.similarity`."""
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.maths.rotations import Array, dotted, length
-from rotctl.settings.settings import SPARSE, STRICT, Finite, Positive, Vector
+from rotctl.settings.fields import SPARSE, STRICT, Finite, Positive, Vector
 
 LEAST = 1e-3  # [-] of a quaternion's length, below which nobody knows what it is
 

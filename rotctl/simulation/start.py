@@ -15,7 +15,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, advance, cross, dot
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Range
+from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Range
 from rotctl.simulation import aloft as spawned
 from rotctl.simulation import falling as falls
 from rotctl.simulation.aloft import AloftSettings

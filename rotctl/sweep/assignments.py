@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from rotctl.choices.choosing import simple
+from rotctl.choices.composing import simple
 from rotctl.choices.listing import choices
 from rotctl.settings import plain
 

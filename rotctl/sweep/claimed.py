@@ -5,12 +5,12 @@ from typing import Any
 
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
-from rotctl.meant import instead
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
+from rotctl.suggestion import instead
 from rotctl.sweep.plan import Planned
 from rotctl.sweep.points import points
 

@@ -8,7 +8,7 @@ beside the simulation of a second takes half as long again.
 from collections.abc import Generator, Sequence
 from contextlib import closing
 
-from rotctl.runs.run_folder import EncodedRun
+from rotctl.runs.folder import EncodedRun
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.task import Order, carry_out
 

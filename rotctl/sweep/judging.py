@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl.choices.overrides import assigned, single
-from rotctl.config.config import composed
+from rotctl.config.loading import composed
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -18,7 +18,7 @@ from rotctl.metrics.expressions.expression import Expression
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import TAKEN, Table, tabulated
 from rotctl.runs.summary import Summary, judged_again
-from rotctl.settings.checked import unknown_key
+from rotctl.settings.checking import unknown_key
 from rotctl.settings.plain import NOTHING, Way, exchanged, way
 from rotctl.sweep.engines import Engine, Failure
 

@@ -17,9 +17,9 @@ from rotctl.results import manifest
 from rotctl.results.index import ORIGIN, Row, stamp
 from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry
-from rotctl.runs.run_folder import EncodedRun, publish
+from rotctl.runs.folder import EncodedRun, publish
 from rotctl.runs.summary import Summary, broke_down
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.sweep import groups
 from rotctl.sweep.engines import Engine, Failure
 from rotctl.sweep.plan import Plan, Planned

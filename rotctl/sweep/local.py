@@ -18,8 +18,8 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, TypeVar
 
+from rotctl.engine import mujoco_without_opengl
 from rotctl.errors import InputError
-from rotctl.headless import mujoco_without_opengl
 from rotctl.sweep.engines import TOGETHER, Failure, carried_out, died, ending
 
 T = TypeVar("T")

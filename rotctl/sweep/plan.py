@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rotctl import same
+from rotctl import caching
 from rotctl.config.identity import identity, model_hash
 from rotctl.config.schema import Config
 from rotctl.errors import InputError, LogError
@@ -15,8 +15,8 @@ from rotctl.results import index
 from rotctl.results.code import code_of, code_version
 from rotctl.results.configs import config_of
 from rotctl.results.index import INDEX_NAME, ORIGIN, Index, Row
+from rotctl.runs.folder import has_all_beside, open_published, publish
 from rotctl.runs.run import by_other_criteria, same_criteria
-from rotctl.runs.run_folder import has_all_beside, open_published, publish
 from rotctl.runs.scenario import model_from, model_parts
 from rotctl.runs.summary import Summary
 from rotctl.sweep.assignments import MOST_POINTS
@@ -68,7 +68,7 @@ def planned(points: Iterable[Point]) -> list[Planned]:
     """
     runs: dict[str, Planned] = {}
     # Hills are drawn and compiled once a seed.
-    hashed = same.kept(MOST_POINTS)(lambda *parts: model_hash(model_from(*parts)))
+    hashed = caching.kept(MOST_POINTS)(lambda *parts: model_hash(model_from(*parts)))
     for point in points:
         config = point.config
         name = identity(config, hashed(*model_parts(config)))

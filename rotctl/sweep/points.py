@@ -11,16 +11,16 @@ from itertools import product
 from math import prod
 from typing import Any
 
-from rotctl.behaviours.chain.chain_settings import ChainSettings
+from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.choices import labels
-from rotctl.choices.choosing import package
+from rotctl.choices.composing import package
 from rotctl.choices.listing import choices
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.config.schema import Config, changed
 from rotctl.errors import InputError
 from rotctl.results.keys import value_at
 from rotctl.settings import plain
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.sweep.assignments import MOST_POINTS, Assignment, quickly
 
 PARTS = "behaviour.parts"  # of a chain, which are composed themselves
@@ -36,7 +36,7 @@ class Point:
     """One point of a grid.
 
     Attributes:
-        overrides: one value each; `config.load` would make the same config of them.
+        overrides: one value each; `loading.load` would make the same config of them.
         keys: that they are about.
     """
 
@@ -106,7 +106,7 @@ def _config(
     parts: Parts,
     apart: frozenset[str] = NOTHING_APART,
 ) -> Config:
-    """As `config.load`, but quick where only plain values differ from an earlier point.
+    """As `loading.load`, but quick where only plain values differ from an earlier point.
 
     Args:
         apart: parts of the config of which all that is said is composed, and not set.

@@ -11,13 +11,13 @@ from dataclasses import fields
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from rotctl.caching import kept
 from rotctl.config.schema import Config
 from rotctl.log import TrajectoryBuffer
 from rotctl.runs.encoding import encoded
+from rotctl.runs.folder import EncodedRun
 from rotctl.runs.run import built, in_memory
-from rotctl.runs.run_folder import EncodedRun
 from rotctl.runs.scenario import Scenario, shared
-from rotctl.same import kept
 from rotctl.sweep import keep
 from rotctl.sweep.engines import Failure, carried_out
 

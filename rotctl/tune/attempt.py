@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import acos, degrees, isnan, nan, pi
 
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer

@@ -17,8 +17,8 @@ from pydantic import Field
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.settings.checked import checked
-from rotctl.settings.settings import Finite, Fraction
+from rotctl.settings.checking import checked
+from rotctl.settings.fields import Finite, Fraction
 from rotctl.tune.sampler import distributions
 from rotctl.tune.space import Space
 from rotctl.tune.values import Values

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 
 from rotctl import files
-from rotctl.choices.choosing import SELF
+from rotctl.choices.composing import SELF
 from rotctl.choices.listing import choices as choices_of
 from rotctl.choices.listing import conf_dir, content, named_file, own_dir, usual
 from rotctl.log import collect

@@ -11,13 +11,13 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.choices.listing import named_file, named_files
 from rotctl.errors import InputError
-from rotctl.meant import instead
 from rotctl.metrics import appearance, pace
 from rotctl.metrics.criteria import rolling
 from rotctl.metrics.expressions import expression
 from rotctl.settings import documents
-from rotctl.settings.checked import checked
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.checking import checked
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.suggestion import instead
 from rotctl.tune.key_braces import MOST, expanded
 
 ROLLING = tuple(c.name for kind in (rolling, appearance, pace) for c in kind.COLUMNS)

@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from rotctl.config.config import load
+from rotctl.caching import kept
+from rotctl.config.loading import load
 from rotctl.config.schema import Config, changed, check
 from rotctl.errors import InputError
-from rotctl.same import kept
 from rotctl.settings import plain
 from rotctl.settings.plain import NOTHING, dotted, member, way
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 from rotctl.tune.space import TRAINING_SEEDS, Space, unseeded
 
 Values = dict[str, float]  # key -> value, in the order of the space

@@ -27,7 +27,7 @@ def command(case):
 
     def call():
         from rotctl.choices import listing
-        from rotctl.cli.cli import main
+        from rotctl.cli.main import main
         from rotctl.report.site import build
         from rotctl.sweep import cluster, workers
 

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 
 from rotctl.choices import listing
-from rotctl.config.config import load
+from rotctl.config.loading import load
 from rotctl.log import RunLog, write_run
 from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 OVERRIDES = ["seed=range(0,2)", "duration=0.1", "--quiet"]
 SPACE = """\

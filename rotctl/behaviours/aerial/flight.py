@@ -25,12 +25,12 @@ from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array, crossed, dot, quaternion_from_rotation_vector
-from rotctl.meant import instead
 from rotctl.mechanics.bodies import ROOT_BODY, body_ids, is_character, lowest_and_highest
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
 from rotctl.motion import make_pose
+from rotctl.suggestion import instead
 
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
 ROUNDING = 1e-6  # [m]

@@ -7,9 +7,9 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aerial.landing import LandingSettings
 from rotctl.behaviours.aerial.levelling import LevellingSettings
-from rotctl.meant import instead
 from rotctl.motion import Turn
-from rotctl.settings.settings import SPARSE, STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.suggestion import instead
 
 TUCK = "tuck"  # the shape that every flight has
 

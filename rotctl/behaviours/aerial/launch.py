@@ -21,7 +21,7 @@ from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Fraction, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -26,10 +26,10 @@ from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 if TYPE_CHECKING:  # which makes this one
-    from rotctl.behaviours.chain.chain_settings import ChainSettings
+    from rotctl.behaviours.chain.settings import ChainSettings
 
 Part = Staged | Rolling | Finishing
 

@@ -12,7 +12,7 @@ from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.settings import MOST_PARTS, SPARSE, STRICT, Positive
+from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Positive
 
 
 @validated(frozen=True, config=STRICT)

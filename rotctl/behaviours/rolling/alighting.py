@@ -19,7 +19,7 @@ from rotctl.maths.rotations import Array, crossed, dotted
 from rotctl.mechanics.bodies import ROOT_BODY, SIDES, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 Joints = Annotated[tuple[str, ...], Field(min_length=1, max_length=8)]  # of a limb, in C, too
 

@@ -17,7 +17,7 @@ from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

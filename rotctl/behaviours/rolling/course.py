@@ -14,7 +14,7 @@ from typing import Annotated, Literal, NamedTuple
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.settings.settings import STRICT, Finite, NonNegative
+from rotctl.settings.fields import STRICT, Finite, NonNegative
 
 TIGHTEST = 1.0  # [m] of an arc's radius: on a tighter one a hand would stay where it is
 SHORTEST = 0.1  # [m] of a leg: less is no way, and an hour of it takes long to look up

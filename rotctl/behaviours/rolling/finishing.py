@@ -16,8 +16,8 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.rolling.remembering import RollingMemory
 from rotctl.behaviours.rolling.rolling import Rolling
+from rotctl.behaviours.staged.settings import StagedSettings
 from rotctl.behaviours.staged.staged import Staged, StagedMemory
-from rotctl.behaviours.staged.staged_settings import StagedSettings
 from rotctl.behaviours.staged.stages import Stage, TaskSettings
 from rotctl.behaviours.support import pendulum_rate
 from rotctl.control import Command, ControllerSettings
@@ -26,7 +26,7 @@ from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 from rotctl.motion import RollAbout
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
 
 AHEAD = 0.9  # [rev] before the last roll is over: it leaves the squat then, hands on the ground
 

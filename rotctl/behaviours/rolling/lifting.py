@@ -10,7 +10,7 @@ from typing import Annotated
 from pydantic import Field
 
 from rotctl.motion import FourierSeries
-from rotctl.settings.settings import Finite
+from rotctl.settings.fields import Finite
 
 MOST = 20.0  # [m/rev] of the tallest body, 10 m, which rises six times as far as an adult
 

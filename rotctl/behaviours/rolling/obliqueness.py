@@ -14,7 +14,7 @@ from pydantic import Field
 
 from rotctl.maths.rotations import Array
 from rotctl.motion import FourierSeries, over_phase
-from rotctl.settings.settings import Finite
+from rotctl.settings.fields import Finite
 
 Oblique = FourierSeries[Annotated[Finite, Field(ge=-60, le=60)]]
 """From the left, or right, towards the head [deg], over the phase."""

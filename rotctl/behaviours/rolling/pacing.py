@@ -15,7 +15,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
 
 Phase = Annotated[Finite, Field(ge=-1, le=1)]  # [rev] who means degrees is told
 Share = Annotated[NonNegative, Field(le=1)]

@@ -18,7 +18,7 @@ from rotctl.mechanics.excursion import Excursion, ExcursionSettings
 from rotctl.mechanics.state import State
 
 if TYPE_CHECKING:  # which makes the roll that this is a part of
-    from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+    from rotctl.behaviours.rolling.settings import RollingSettings
 
 
 class RollingMemory(NamedTuple):

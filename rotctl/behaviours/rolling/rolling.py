@@ -23,7 +23,7 @@ from rotctl.behaviours.facing import UP
 from rotctl.behaviours.rolling.alighting import Alighting
 from rotctl.behaviours.rolling.bearing import Bearing, Bearings
 from rotctl.behaviours.rolling.catching import Catch
-from rotctl.behaviours.rolling.compiled_roll import CompiledRoll
+from rotctl.behaviours.rolling.compiled import CompiledRoll
 from rotctl.behaviours.rolling.pacing import Pace
 from rotctl.behaviours.rolling.remembering import Remembering, RollingMemory
 from rotctl.behaviours.rolling.waiting import Waiting
@@ -40,7 +40,7 @@ from rotctl.mechanics.state import State
 from rotctl.motion import over_phase
 
 if TYPE_CHECKING:  # which makes this one
-    from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+    from rotctl.behaviours.rolling.settings import RollingSettings
 
 
 class Rolling:

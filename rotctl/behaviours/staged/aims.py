@@ -25,7 +25,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
 from rotctl.mechanics import excursion
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -10,7 +10,7 @@ from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.maths.rotations import about_up, advance, advanced, rotation_between
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Finite, Fraction
+from rotctl.settings.fields import STRICT, Finite, Fraction
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -12,7 +12,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -13,7 +13,7 @@ from rotctl.behaviours.scene import Scene
 from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.model import Model
 from rotctl.motion import PosePair, Turn, make_pose
-from rotctl.settings.settings import STRICT, Finite, Positive, Range
+from rotctl.settings.fields import STRICT, Finite, Positive, Range
 
 Remembered = TypeVar("Remembered")
 

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from rotctl.behaviours.aerial import possible
+from rotctl.behaviours.aerial import feasibility
 from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.staged import take_off
 from rotctl.behaviours.staged.posing import OverPhase
-from rotctl.behaviours.staged.prepared import pose_law, prepared, task_names
+from rotctl.behaviours.staged.preparation import pose_law, prepared, task_names
 from rotctl.behaviours.staged.stages import mirrored
 from rotctl.control import Command, ControllerSettings
 from rotctl.control.settings import PoseGains
@@ -27,7 +27,7 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
 
 if TYPE_CHECKING:  # which makes this one
-    from rotctl.behaviours.staged.staged_settings import StagedSettings
+    from rotctl.behaviours.staged.settings import StagedSettings
 
 SLOW = 0.5  # [m/s, rad/s] the fastest that something still may move
 
@@ -107,7 +107,9 @@ class Staged:
         ]
         self._laws = {s.name: law for s, law in zip(self._stages, self._poses, strict=True)}
         for part in self._parts:
-            possible.check(model, self.axes, self._target, part.aims, self._laws, settings.take_off)
+            feasibility.check(
+                model, self.axes, self._target, part.aims, self._laws, settings.take_off
+            )
 
     def start(self, pitch: float) -> Placement:
         """How a run starts at a pitch [rad] about what it turns about."""

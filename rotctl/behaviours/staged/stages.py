@@ -9,6 +9,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.aerial.flight_settings import FlightSettings
 from rotctl.behaviours.facing import Lying
 from rotctl.behaviours.staged.aims import SERVES, Aim
+from rotctl.behaviours.staged.conditions import Leaves, Turned, Until
 from rotctl.behaviours.staged.posing import (
     Beyond,
     GlideSettings,
@@ -16,15 +17,14 @@ from rotctl.behaviours.staged.posing import (
     RiseSettings,
     TurnSettings,
 )
-from rotctl.behaviours.staged.until import Leaves, Turned, Until
 from rotctl.behaviours.standing.stepping import Stepping
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
-from rotctl.meant import instead
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles, other_side
-from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Vector
+from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Vector
+from rotctl.suggestion import instead
 
 
 @validated(frozen=True, config=STRICT)

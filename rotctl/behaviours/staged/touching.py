@@ -11,7 +11,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_ids, lowest_and_highest
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.terrain.pool import Basin
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

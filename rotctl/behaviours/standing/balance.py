@@ -14,7 +14,7 @@ from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -14,7 +14,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

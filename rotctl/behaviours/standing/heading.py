@@ -11,7 +11,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.rotations import about_up
 from rotctl.mechanics.bodies import ROOT_BODY
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT
+from rotctl.settings.fields import STRICT
 
 
 @validated(frozen=True, config=STRICT)

@@ -17,7 +17,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Positive, Vector
+from rotctl.settings.fields import STRICT, Positive, Vector
 
 
 @validated(frozen=True, config=STRICT)

@@ -30,7 +30,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, Triple, cross, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
 
 NARROW = 0.05  # [m] hands that are closer make no line
 

@@ -21,7 +21,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import SPARSE, STRICT, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, NonNegative, Positive
 
 DOWN = 0.5  # of a swing, from which on a touch ends it
 LATE = 1.5  # swings, after which one ends that met no ground

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from rotctl.errors import InputError
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
-INTERRUPTED_NAME = "interrupted.h5"  # rotctl.runs.run_folder's
+INTERRUPTED_NAME = "interrupted.h5"  # rotctl.runs.folder's
 IS_ID = re.compile("[0-9a-f]{12}")
 FRAMES = 12  # of a filmstrip, two rows of six
 RUNS = Path("runs")  # where runs go unless somebody says otherwise

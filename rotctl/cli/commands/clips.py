@@ -147,7 +147,7 @@ def preview_motion(arguments: argparse.Namespace) -> int:
 
 
 def _model(character: str) -> "Model":
-    from rotctl.config.config import load
+    from rotctl.config.loading import load
     from rotctl.runs.scenario import model_of
 
     return model_of(load([f"character={character}"]))

@@ -219,7 +219,7 @@ def verify(arguments: argparse.Namespace) -> int:
     from dataclasses import asdict
 
     from rotctl.log import RunLog
-    from rotctl.runs.verify import repeat
+    from rotctl.runs.repetition import repeat
 
     log = RunLog.open(log_file(arguments.log))
     with bar("again", "step", log.steps) as shown:

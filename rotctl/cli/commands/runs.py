@@ -63,11 +63,11 @@ def add_run(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
-    from rotctl.headless import mujoco_without_opengl
+    from rotctl.engine import mujoco_without_opengl
 
     mujoco_without_opengl()
-    from rotctl.behaviours.chain.chain_settings import first_stage
-    from rotctl.config.config import load, own_file, rebuilt, recorded
+    from rotctl.behaviours.chain.settings import first_stage
+    from rotctl.config.loading import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME, RunLog
     from rotctl.metrics.criteria.judge import settling
     from rotctl.runs.run import built, run
@@ -158,8 +158,8 @@ def add_list(commands: Commands) -> None:
 def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
     from rotctl.choices.listing import EXPERIMENTS, described, groups
-    from rotctl.meant import instead
-    from rotctl.settings.checked import brief
+    from rotctl.settings.checking import brief
+    from rotctl.suggestion import instead
 
     titles = {
         "catch": "catch (+catch=NAME)",
@@ -211,9 +211,9 @@ def add_show(commands: Commands) -> None:
 
 def show(arguments: argparse.Namespace) -> int:
     """Print the composed config."""
-    from rotctl.config.config import load, recorded
+    from rotctl.config.loading import load, recorded
     from rotctl.log import RunLog
-    from rotctl.settings.written import part_to_yaml, to_yaml
+    from rotctl.settings.writing import part_to_yaml, to_yaml
 
     run = _only_run(arguments.overrides)
     config = recorded(RunLog.open(log_file(run))) if run else load(arguments.overrides)

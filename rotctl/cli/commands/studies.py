@@ -55,7 +55,7 @@ def sweep(arguments: argparse.Namespace) -> int:
     """Simulate a grid of runs, or what is left of it."""
     from contextlib import closing
 
-    from rotctl.headless import mujoco_without_opengl
+    from rotctl.engine import mujoco_without_opengl
 
     mujoco_without_opengl()
     from rotctl.results import experiments, manifest

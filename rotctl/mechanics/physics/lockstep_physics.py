@@ -7,7 +7,7 @@ from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.physics.options import Capacity, Count, Some, Substeps, disable_flag
-from rotctl.settings.settings import STRICT, Fraction, NonNegative, Positive, Vector
+from rotctl.settings.fields import STRICT, Fraction, NonNegative, Positive, Vector
 
 
 @validated(frozen=True, config=STRICT)

@@ -6,7 +6,7 @@ import mujoco
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.physics.options import Capacity, Count, Some, Substeps, disable_flag
-from rotctl.settings.settings import STRICT, Fraction, NonNegative, Positive, Vector
+from rotctl.settings.fields import STRICT, Fraction, NonNegative, Positive, Vector
 
 PLAIN_OPTIONS = (
     "iterations",

@@ -8,7 +8,7 @@ import mujoco
 from pydantic import Field
 
 from rotctl.maths.rotations import Array
-from rotctl.settings.settings import Positive
+from rotctl.settings.fields import Positive
 
 Friction = Annotated[Positive, Field(le=10)]  # sliding friction of ground and character [-]
 

@@ -25,7 +25,7 @@ from rotctl.mechanics.terrain.ground import (
     add_geom,
 )
 from rotctl.mechanics.terrain.plane import Plane
-from rotctl.settings.settings import STRICT, NonNegative, Positive, Range
+from rotctl.settings.fields import STRICT, NonNegative, Positive, Range
 
 FLOOR_PART = 0.05  # [m] of a bar that is below the ground
 MOST_THINGS = 18_000  # an hour of one every 60 cm

@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import EVERYWHERE, Extent, Friction, add_geom
-from rotctl.settings.settings import STRICT, Finite
+from rotctl.settings.fields import STRICT, Finite
 
 
 @validated(frozen=True, config=STRICT)

@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.terrain.ground import BEHIND, EVERYWHERE, WIDTH, Extent, Friction, add_geom
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 THICKNESS = 0.25  # [m] of the platform
 BASIN = 25.0  # [m] of water to either side

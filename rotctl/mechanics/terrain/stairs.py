@@ -19,7 +19,7 @@ from rotctl.mechanics.terrain.ground import (
     Friction,
     add_geom,
 )
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 MOST_STEPS = 18_000  # an hour of treads of 60 cm; they take 0.7 s to build and 0.1 GB
 

@@ -24,7 +24,7 @@ from rotctl.mechanics.terrain.ground import (
     Friction,
     add_geom,
 )
-from rotctl.settings.settings import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 LENGTH = 66.0  # [m] of a field: with what is behind the start, 20 s at the fastest
 CELL = 0.15  # [m] between heights; finer ones would give the engine more contacts than it keeps

@@ -13,7 +13,7 @@ from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import flip, standing
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 COLUMNS = (
     Column("touched", "What came down, and when [s]", ""),

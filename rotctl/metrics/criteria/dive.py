@@ -15,7 +15,7 @@ from rotctl.metrics import peaks
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.criteria.acrobatic import HeldCriteria, longest_held
 from rotctl.metrics.criteria.flip import HOP, longest_flight, turn
-from rotctl.settings.settings import STRICT, Finite, Positive
+from rotctl.settings.fields import STRICT, Finite, Positive
 
 PLATFORM = 0.0  # [m] height of its top
 WATCHED = ("hand", "foot", "head", "pelvis")  # tasks whose points are told, on both sides

@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.caching import kept
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import rolling, standing
 from rotctl.metrics.criteria.rolling import RollingCriteria
@@ -16,8 +17,7 @@ from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.excerpt import Excerpt
 from rotctl.metrics.halts import Halts
-from rotctl.same import kept
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 ROOT = 1  # the character's first body
 HALF = 0.5  # [rev] off the number that is wanted is another number

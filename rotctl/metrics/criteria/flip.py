@@ -11,7 +11,7 @@ from rotctl.metrics import peaks
 from rotctl.metrics.columns import Arrays, Column, floats, frame
 from rotctl.metrics.criteria import standing
 from rotctl.metrics.criteria.standing import StandingCriteria
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 HOP = 0.1  # [s] without a contact that is no flight
 COLUMNS = (

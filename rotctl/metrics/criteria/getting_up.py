@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import standing
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 COLUMNS = (
     Column("up_from", "On its feet alone, upright and high enough from", "s"),

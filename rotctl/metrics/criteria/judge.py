@@ -22,7 +22,7 @@ from rotctl.metrics.criteria import (
     acrobatic,
     chain,
     dive,
-    early,
+    early_end,
     finish,
     flip,
     getting_up,
@@ -44,7 +44,7 @@ from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.quantile import percentile
-from rotctl.settings.settings import MOST_PARTS, STRICT
+from rotctl.settings.fields import MOST_PARTS, STRICT
 
 Single = Annotated[
     AcrobaticCriteria
@@ -168,7 +168,7 @@ def judge(
         turned = orientation.measure(log, criteria, commanded["target_excursion"], period)
         found, reason = dict(vars(turned)), orientation.failure(turned, criteria, steps * period)
     if reason and steps and not isinstance(criteria, ChainCriteria):
-        reason = early.too_short(log, criteria, commanded, found, period) or reason
+        reason = early_end.too_short(log, criteria, commanded, found, period) or reason
     if not whole:
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:
@@ -198,7 +198,7 @@ def _chained(
         first, end = part.rows.start, part.rows.stop
         wanted = (end - first) * period
         made = judge(part, own, link.commanded, period, wanted, mj, link.halts)
-        reasons.append(early.of_a_part(made.reason, first * period, end * period, end < rows))
+        reasons.append(early_end.of_a_part(made.reason, first * period, end * period, end < rows))
     found = {
         "parts_succeeded": sum(not reason for reason in reasons),
         "parts_begun": len(parts),
@@ -206,7 +206,7 @@ def _chained(
     }
     for number, (link, reason) in enumerate(zip(links, reasons, strict=False), 1):
         if reason:
-            last = number == len(parts) < len(links) and reason.startswith(early.ENDS)
+            last = number == len(parts) < len(links) and reason.startswith(early_end.ENDS)
             left = ", ".join(link.name for link in links[number:]) if last else ""
             more = f", and then {left}" if left else ""
             return found, f"part {number} of {len(links)}, {link.name}: {reason}{more}"

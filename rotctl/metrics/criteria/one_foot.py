@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import flip, standing
 from rotctl.metrics.criteria.standing import StandingCriteria
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 COLUMNS = (
     Column("turned_alone", "Turned on one foot alone", "deg"),

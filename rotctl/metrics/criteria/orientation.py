@@ -8,7 +8,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats, frame, in_frame
-from rotctl.settings.settings import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive
 
 COLUMNS = (
     Column("turned", "Turned about the long axis", "deg"),

@@ -13,7 +13,7 @@ from rotctl.metrics.halts import Halts, going, unkept
 from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.smoothness import jerk, recovery, use_of_contacts
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
-from rotctl.settings.settings import STRICT, Finite, NonNegative, Positive, Range
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive, Range
 
 COLUMNS = (
     Column("revolutions", "Revolutions", "rev"),

@@ -18,9 +18,9 @@ import numpy as np
 
 from rotctl.errors import InputError
 from rotctl.log.schema import SCHEMA
-from rotctl.meant import instead
 from rotctl.metrics.expressions.operations import FUNCTIONS, LOOKED_UP, power
 from rotctl.settings import documents
+from rotctl.suggestion import instead
 
 LONGEST = 1000  # characters
 MOST_NODES = 200

@@ -13,26 +13,26 @@ from rotctl.behaviours.aerial.flight_settings import FlightSettings
 from rotctl.behaviours.aerial.landing import LandingSettings
 from rotctl.behaviours.aerial.launch import Launch, Lean, Whirl
 from rotctl.behaviours.aerial.levelling import LevellingSettings
-from rotctl.behaviours.chain.chain_settings import ChainSettings, PartSettings
 from rotctl.behaviours.chain.chaining import RestSettings
+from rotctl.behaviours.chain.settings import ChainSettings, PartSettings
 from rotctl.behaviours.chain.ways import OnFeet, Rolls, Way
 from rotctl.behaviours.rolling.alighting import AlightingSettings
 from rotctl.behaviours.rolling.catching import CatchSettings
 from rotctl.behaviours.rolling.finishing import FinishSettings
 from rotctl.behaviours.rolling.pacing import PaceSettings
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.behaviours.staged.conditions import After, Leant, Leaves, Low, Near, Over, Passed, Still
 from rotctl.behaviours.staged.placing import Above, Ground, Opposite
 from rotctl.behaviours.staged.posing import Beyond, GlideSettings, ReachSettings, RiseSettings
 from rotctl.behaviours.staged.stages import TaskSettings
 from rotctl.behaviours.staged.touching import Airborne, Launched, Touches
-from rotctl.behaviours.staged.until import After, Leant, Leaves, Low, Near, Over, Passed, Still
 from rotctl.behaviours.standing.balance import Capture, Lunge
 from rotctl.behaviours.standing.gathering import Beside
 from rotctl.behaviours.standing.pivoting import Bring, Escapes
 from rotctl.behaviours.standing.poising import Poise, Shift
 from rotctl.behaviours.standing.stepping import Stepping
 from rotctl.behaviours.standing.wheeling import Carry, Place, Stride
-from rotctl.control.similar import similar_gains
+from rotctl.control.similarity import similar_gains
 from rotctl.mechanics.stature import Likeness
 
 T = TypeVar("T")

@@ -17,7 +17,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.excursion import ExcursionName, ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings.settings import SPARSE, STRICT, Finite, Positive
+from rotctl.settings.fields import SPARSE, STRICT, Finite, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -29,7 +29,7 @@ from rotctl.motion import (
     make_pose_pair,
     make_reference_pair,
 )
-from rotctl.settings.settings import STRICT, Finite
+from rotctl.settings.fields import STRICT, Finite
 
 
 @validated(frozen=True, config=STRICT)

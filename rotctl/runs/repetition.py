@@ -14,11 +14,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.config.config import recorded
+from rotctl.config.loading import recorded
+from rotctl.engine import quiet
 from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog
 from rotctl.log.schema import MODEL_PATH
-from rotctl.quiet import quiet
 from rotctl.runs.encoding import origin
 from rotctl.runs.run import built, in_memory
 from rotctl.runs.scenario import Scenario

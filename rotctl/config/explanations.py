@@ -9,12 +9,12 @@ from typing import Any
 
 from hydra.core.override_parser.types import Override
 
-from rotctl.choices.choosing import package
+from rotctl.choices.composing import package
 from rotctl.choices.listing import choices
 from rotctl.choices.overrides import is_choice
 from rotctl.config.schema import check
 from rotctl.errors import InputError
-from rotctl.settings.checked import brief, clip, unknown_key
+from rotctl.settings.checking import brief, clip, unknown_key
 from rotctl.settings.plain import NOTHING, Way, dotted, find, keys_under, member, put, way
 
 PARTS = (("behaviour", "parts"), ("criteria", "parts"))  # of a chain

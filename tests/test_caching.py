@@ -1,6 +1,6 @@
 """Results kept for the very objects they came from."""
 
-from rotctl.same import kept
+from rotctl.caching import kept
 
 
 def test_the_same_object_is_asked_about_once():

@@ -9,15 +9,15 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.chain import ways
 from rotctl.behaviours.chain.chaining import Chain, Part, RestSettings
 from rotctl.behaviours.chain.ways import Way, Ways
-from rotctl.behaviours.rolling.rolling_settings import RollingSettings
-from rotctl.behaviours.staged.staged_settings import StagedSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.behaviours.staged.settings import StagedSettings
 from rotctl.control import ControllerSettings
 from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings.checked import clip
-from rotctl.settings.settings import MOST_PARTS, SPARSE, STRICT, Positive
+from rotctl.settings.checking import clip
+from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Positive
 
 LEAST_TURNS = 2.0  # [rev] of a roll that follows another part
 

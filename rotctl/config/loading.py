@@ -11,8 +11,8 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rotctl.choices import choosing, labels
-from rotctl.choices.choosing import Assignment, simple
+from rotctl.choices import composing, labels
+from rotctl.choices.composing import Assignment, simple
 from rotctl.choices.listing import (
     choices,
     conf_dir,
@@ -22,13 +22,13 @@ from rotctl.choices.listing import (
     own_dir,
     require_plain,
 )
-from rotctl.config import chained, own_body
+from rotctl.config import chains, own_body
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.settings import documents
 from rotctl.settings.plain import NOTHING, exchanged, way
-from rotctl.settings.written import to_dict
+from rotctl.settings.writing import to_dict
 
 if TYPE_CHECKING:
     from hydra.core.override_parser.types import Override
@@ -44,11 +44,11 @@ def load(overrides: list[str]) -> Config:
         InputError: one line that names the bad value and the valid choices or range.
     """
     data = composed(overrides)
-    labels.require_own_in_files(choosing.chosen(overrides), data)
+    labels.require_own_in_files(composing.chosen(overrides), data)
     try:
         return check(data)
     except InputError as error:
-        complaint = chained.told(str(error), data)
+        complaint = chains.told(str(error), data)
         raise InputError(f"{own_file(overrides, str(error))}{complaint}") from None
 
 
@@ -63,7 +63,7 @@ def own_file(
     Args:
         made: what a config is made to, where that complains.
     """
-    chosen = choosing.chosen(overrides)
+    chosen = composing.chosen(overrides)
     mine = {one.key: named_file(one.key, one.value) for one in chosen}
     mine = {group: path for group, path in mine.items() if is_own(path)}
     if not mine:
@@ -108,10 +108,10 @@ def composed(overrides: list[str]) -> dict[str, Any]:
     """
     body = own_body.named(overrides)
     if body is None:
-        return chained.composed(_composed(overrides), _composed, overrides)
+        return chains.composed(_composed(overrides), _composed, overrides)
     labels.require_own(((f"{own_body.GROUP}.{key}", value) for key, value in body.changes), dict)
     data = {**_composed(body.others), own_body.GROUP: own_body.converted(body)}
-    return chained.composed(data, _composed, body.others)
+    return chains.composed(data, _composed, body.others)
 
 
 def _composed(overrides: list[str]) -> dict[str, Any]:
@@ -139,7 +139,7 @@ def _composed(overrides: list[str]) -> dict[str, Any]:
 def _of_choices(overrides: list[str]) -> dict[str, Any]:
     """What the choices among them make by themselves; nothing if they make no config."""
     try:
-        return _chosen(tuple(choosing.chosen(overrides)), folders(), _stamp(folders()))
+        return _chosen(tuple(composing.chosen(overrides)), folders(), _stamp(folders()))
     except InputError:
         return {}
 
@@ -170,7 +170,7 @@ def _chosen(
     chosen: tuple[Assignment, ...], among: tuple[Path, ...], stamp: tuple[int, ...]
 ) -> dict[str, Any]:
     """Composed of choices alone, from files as they were at some time."""
-    data = choosing.composed(chosen)
+    data = composing.composed(chosen)
     if data is not None:
         return data
     from rotctl.choices.overrides import single
@@ -193,7 +193,7 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     from omegaconf import OmegaConf
     from omegaconf.errors import MissingMandatoryValue, OmegaConfBaseException
 
-    from rotctl.config.explained import explain, require_placed
+    from rotctl.config.explanations import explain, require_placed
 
     require_placed(found)
     GlobalHydra.instance().clear()
@@ -204,7 +204,7 @@ def _by_hydra(overrides: list[str], found: "list[Override]") -> dict[str, Any]:
     except MissingMandatoryValue as error:
         raise InputError(f"{error.full_key}: missing, give it as {error.full_key}=VALUE") from None
     except RecursionError:
-        raise InputError(choosing.IN_A_CIRCLE) from None
+        raise InputError(composing.IN_A_CIRCLE) from None
     except (HydraException, OmegaConfBaseException, ValueError, TypeError) as error:
         raise InputError(explain(error, found, _changed_by(found))) from None
     return data

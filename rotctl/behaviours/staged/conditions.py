@@ -16,7 +16,7 @@ from rotctl.behaviours.standing.wheeling import beyond
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.settings import SPARSE, STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)

@@ -5,8 +5,8 @@ from math import radians
 import pytest
 from flights import HEAD_FIRST, flier, fly
 
-from rotctl.behaviours.aerial.possible import GONE
-from rotctl.config.config import load
+from rotctl.behaviours.aerial.feasibility import GONE
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build
 

@@ -17,7 +17,7 @@ from rotctl.control.settings import (
 from rotctl.control.supervisor import Thresholds
 from rotctl.mechanics.merging import Merging
 from rotctl.mechanics.stature import Likeness
-from rotctl.settings.settings import Vector
+from rotctl.settings.fields import Vector
 
 G = TypeVar("G", ControllerSettings, Gains)
 # By the kind of a task, of what its rows are in: N, N m; an acceleration is the same for all.

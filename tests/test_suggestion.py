@@ -2,8 +2,8 @@
 
 import pytest
 
-from rotctl.cli.cli import main
-from rotctl.meant import MANY, NEAR, instead, instead_of_many, meant
+from rotctl.cli.main import main
+from rotctl.suggestion import MANY, NEAR, instead, instead_of_many, meant
 
 
 def test_the_nearest_of_the_valid_names():

@@ -1,4 +1,4 @@
-"""Frozen settings to plain data and to YAML: the way back from `rotctl.settings.checked`.
+"""Frozen settings to plain data and to YAML: the way back from `rotctl.settings.checking`.
 
 A run is known by the hash of what its config is written as.
 """
@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
+from rotctl.caching import kept
 from rotctl.errors import InputError
-from rotctl.same import kept
-from rotctl.settings.checked import unknown_key
+from rotctl.settings.checking import unknown_key
+from rotctl.settings.fields import SPARSE
 from rotctl.settings.plain import NOTHING, dotted, keys_under, member, way
-from rotctl.settings.settings import SPARSE
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from rotctl.config.config import load
-from rotctl.metrics.criteria.early import of_a_part
+from rotctl.config.loading import load
+from rotctl.metrics.criteria.early_end import of_a_part
 from rotctl.runs.run import make
 
 STANDS = ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=1")

@@ -14,9 +14,9 @@ from pydantic.dataclasses import is_pydantic_dataclass, rebuild_dataclass
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.meant import meant
 from rotctl.settings import documents
 from rotctl.settings.plain import NOTHING, dotted, member
+from rotctl.suggestion import meant
 
 T = TypeVar("T")
 LONGEST = 60  # characters of a value that a message repeats

@@ -11,13 +11,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import Any
 
-from rotctl.choices import choosing, labels
+from rotctl.choices import composing, labels
 from rotctl.choices.listing import choices, usual
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
 from rotctl.settings import plain
-from rotctl.settings.checked import brief, clip
-from rotctl.settings.settings import MOST_PARTS
+from rotctl.settings.checking import brief, clip
+from rotctl.settings.fields import MOST_PARTS
 
 KIND, SAID = "chain", "said"
 GAINS = tuple(part.name for part in fields(Gains))
@@ -133,7 +133,7 @@ def _made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
             raise InputError(f"{where}: {brief(word)}: a part may say {', '.join(ABOUT)}")
     try:
         made = compose(words)
-        labels.require_own_in_files(choosing.chosen(words), made)
+        labels.require_own_in_files(composing.chosen(words), made)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
     for group in GROUPS:
