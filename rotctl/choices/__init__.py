@@ -1,1 +1,1 @@
-"""What can be chosen and overridden: from files and a command line to plain data, unread as yet."""
+"""What can be chosen and overridden: files and words of a command line to plain, unchecked data."""
