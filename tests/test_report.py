@@ -17,11 +17,13 @@ from logs import changed
 
 from rotctl.cli.main import main
 from rotctl.errors import InputError
+from rotctl.files import replace as replace_file
 from rotctl.log import RunLog
 from rotctl.metrics.claims import Claim, judge
 from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
 from rotctl.report.site.charts import charts
+from rotctl.report.site.folder import LIST
 from rotctl.report.site.grid import grid
 from rotctl.report.site.panels import drawn
 from rotctl.report.site.rows import from_worst, rows
@@ -173,15 +175,58 @@ def test_replays_share_one_script(site):
         assert len(html) < 400_000
 
 
-def test_the_same_runs_give_the_same_bytes_and_old_pages_go(made, site, tmp_path):
-    out = tmp_path / "again"
+@pytest.mark.parametrize("older", [False, True])  # a version of rotctl, whose reports have no list
+def test_the_same_runs_give_the_same_bytes_and_old_pages_go(made, site, tmp_path, older):
+    out, (old, mine) = tmp_path / "again", ("replays/old.html", "CNAME")
     (out / "replays").mkdir(parents=True)
-    (out / "replays" / "old.html").touch()
-    (out / "CNAME").write_text("not ours")
+    (out / old).touch()
+    (out / mine).write_text("not ours")
+    if older:
+        (out / "replay.js").touch()
+    else:
+        (out / LIST).write_text(f"{old}\n{mine}\n../outside.html\nreplays/../../outside.html\n")
+    (tmp_path / "outside.html").touch()
     report(made, out)
     again = content(out)
-    assert again.pop("CNAME") == b"not ours"
+    assert again.pop(mine) == b"not ours"
     assert again == content(site)
+    assert (tmp_path / "outside.html").exists()
+    assert set((out / LIST).read_text().split()) == again.keys() - {LIST}
+
+
+def test_files_of_others_stay(made, tmp_path, capsys):
+    """`--out` may be any folder: what is not of a report is neither taken away nor written over."""
+    mine = {f"{name}/me.{end}" for name, end in (("pictures", "png"), ("sweeps", "csv"))}
+    for name in mine:
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).touch()
+    for _ in range(2):
+        report(made, tmp_path)
+        assert mine < content(tmp_path).keys()
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "summary.md").write_text("mine")
+    assert main(["report", str(made), "--out", str(other)]) == 2
+    assert capsys.readouterr().err == (
+        f"rotctl: {other / 'summary.md'}: is there, and of no earlier report; choose another "
+        "--out\n"
+    )
+    assert content(other) == {"summary.md": b"mine"}
+
+
+def test_a_report_that_was_cut_off_is_made_again(made, site, tmp_path, monkeypatch):
+    def full(path, data):
+        if path.name == "index.html":
+            raise InputError("no space left")
+        real(path, data)
+
+    real = replace_file
+    with monkeypatch.context() as patched:
+        patched.setattr("rotctl.report.site.folder.files.replace", full)
+        with pytest.raises(InputError):
+            report(made, tmp_path)
+    report(made, tmp_path)
+    assert content(tmp_path) == content(site)
 
 
 # ---------------------------------------------------------------- for programs
