@@ -494,6 +494,17 @@ def test_a_schedule_of_a_part_comes_in_the_run():
     )
 
 
+def test_a_part_is_told_to_end_in_the_run():
+    part = "'forward_roll +finish=stand behaviour.finish.after=9'"
+    chain = load(["behaviour=chain", f"behaviour.parts=[stand,{part}]", "duration=9"])
+    with pytest.raises(InputError) as raised:
+        build(chain)
+    assert str(raised.value).startswith(
+        "behaviour.parts: 'forward_roll +finish=stand behaviour.finish.after=9': "
+        "behaviour.finish.after=9: it is never told to end, the run is over at 9 s"
+    )
+
+
 @pytest.mark.parametrize(
     "key", ["behaviour.parts.2.behaviour.angular_velocity", "criteria.parts.0.lean"]
 )

@@ -151,7 +151,7 @@ def test_c_knows_what_a_roll_can_be_asked():
         ("plant=randomised",),
         ("physics=lockstep",),
         ("controller.backend=reference",),
-        ("behaviour=forward_roll", "+finish=stand"),
+        ("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=0.05"),
         ("behaviour=forward_roll", "+course=circle"),
     ],
     ids=" ".join,

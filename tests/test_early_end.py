@@ -32,7 +32,6 @@ COUNTED = (*STANDS[:2], "behaviour.finish.after=0")
             [*STANDS, "duration=1.2"],
             "1.20 s, 0.20 s after it was told to end: it still rolls",
         ),
-        ([*STANDS, "duration=0.5"], "0.50 s, before it is told to end, at 1 s"),
         (
             [*COUNTED, "behaviour.finish.revolutions=3", "duration=1"],
             r"1.00 s, before it is told to end, after 2.1 rev: it turned 0.\d\d rev",
@@ -94,6 +93,15 @@ def test_a_run_that_had_the_time_fails_for_its_own_reason(overrides, reason):
     found = make(load([*overrides, "seed=2000", "duration=4"])).summary["failure_reason"]
     assert found.startswith(reason)
     assert "the run ends" not in found
+
+
+def test_a_part_that_is_cut_before_it_is_told_to_end_says_so():
+    """A run whose end is told too late is refused; a part may begin too late for that."""
+    part = f"'forward_roll {' '.join(STANDS[1:])}'"
+    chain = ("behaviour=chain", f"behaviour.parts=[stand,{part}]", "behaviour.between=null")
+    rest = ("behaviour.rest.seconds=1", "controller=standing", "duration=1.4")
+    found = make(load([*chain, *rest, "seed=2000"])).summary["failure_reason"]
+    assert found.startswith("part 2 of 2, forward_roll: the run ends at 1.40 s, before it is told")
 
 
 def test_a_part_that_the_runs_end_cuts_says_so_in_the_runs_time():

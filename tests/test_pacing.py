@@ -253,6 +253,12 @@ def test_a_contradicting_pair_is_met_in_its_master():
             "behaviour: is told to halt from 0 s to the end, which is no roll",
         ),
         (["behaviour.angular_velocity=0"], "is told to halt from 0 s to the end"),
+        (
+            ["+finish=stand", "behaviour.finish.after=20"],
+            "behaviour.finish.after=20: it is never told to end, the run is over at 20 s; give "
+            "less than that, or a longer duration",
+        ),
+        (["+finish=stand", "duration=5"], "behaviour.finish.after=8: it is never told to end, the"),
     ],
 )
 def test_one_line_for_what_does_not_fit(overrides, said):

@@ -28,7 +28,8 @@ def test_commands_were_found():
 def test_runs(line, tmp_path, capsys):
     words = [w for w in shlex.split(line) if w != "--filmstrip" and "duration" not in w]
     pushed = ["disturbance.time=[0,0]"] if "disturbance=push" in words else []
-    assert main([*words, *pushed, "duration=0.1", "--out", str(tmp_path)]) == 0
+    ends = ["behaviour.finish.after=0"] if "+finish=stand" in words else []
+    assert main([*words, *pushed, *ends, "duration=0.1", "--out", str(tmp_path)]) == 0
     assert "run.h5" in capsys.readouterr().out
 
 

@@ -163,7 +163,7 @@ def test_below_a_frame_stands_the_blend_or_else_the_stage(tmp_path):
     flips = log("behaviour=back_flip", duration=1.3)
     assert stage_names(flips) == ["stand", "crouch", "tilt", "launch", "flight", "land"]
     assert [moment.note for moment in moments(flips, [0, flips.steps - 1])] == ["stand", "crouch"]
-    ends = log("behaviour=forward_roll", "+finish=stand")
+    ends = log("behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=0.1")
     assert stage_names(ends) == ["roll", "stand"]
 
 

@@ -44,6 +44,7 @@ def require_fit(config: Config, model: Model) -> None:
             f"physics={config.physics.name} give plant.predicted=false"
         )
     _require_in_time(behaviour, config.duration)
+    _require_end(behaviour, config.duration)
     outside = config.disturbance
     if isinstance(outside, Calm):
         return
@@ -194,3 +195,21 @@ def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "
                     f"{key}.{schedule}: what it tells from {time:g} s on never comes, the run is "
                     f"over at {duration:g} s"
                 )
+
+
+def _require_end(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:
+    """A roll with a finish is told to end before a run of that duration [s] is over.
+
+    Of a chain's parts only those of which it was said when: a run may be cut before the others.
+    """
+    if isinstance(behaviour, ChainSettings):
+        for number, part in enumerate(behaviour.parts):
+            if "finish.after" in part.said:
+                _require_end(part.behaviour, duration, f"{part.place(number)}: behaviour")
+    if isinstance(behaviour, RollingSettings) and behaviour.finish:
+        after = behaviour.finish.after
+        if after >= duration:
+            raise InputError(
+                f"{key}.finish.after={after:g}: it is never told to end, the run is over at "
+                f"{duration:g} s; give less than that, or a longer duration"
+            )
