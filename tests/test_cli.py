@@ -283,9 +283,24 @@ def _begun(out):
 
 
 def test_signals_mean_again_what_they_meant(cli):
-    before = signal.getsignal(signal.SIGTERM)
+    both = signal.SIGINT, signal.SIGTERM
+    before = [signal.getsignal(number) for number in both]
     assert cli("list")[0] == 0
-    assert signal.getsignal(signal.SIGTERM) is before
+    assert [signal.getsignal(number) for number in both] == before
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_an_import_loses_is_one_all_the_same(number, cli, monkeypatch):
+    """As while MuJoCo is imported, whose C code raises an ImportError in its place."""
+
+    def imported():
+        try:
+            signal.raise_signal(number)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+    monkeypatch.setattr("rotctl.cli.main.gl.chosen", imported)
+    assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")
 
 
 def test_a_reader_that_has_seen_enough_is_no_error():

@@ -1,5 +1,6 @@
 """The command line: errors, signals and broken pipes become one line and an exit code."""
 
+import argparse
 import atexit
 import gc
 import io
@@ -35,19 +36,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)
-    from rotctl.choices.listing import own  # reads YAML: who asks for help need not wait for it
-    from rotctl.choices.override_files import blamed, expanded
-
     try:
-        if "overrides" in arguments:
-            arguments.overrides = expanded(arguments.overrides)
-        gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
-        with _terminated_like_interrupted(), own(arguments.config_dir):
-            code = int(arguments.command(arguments))
-            if sys.stdout:  # None where the shell has closed it
-                sys.stdout.flush()
-            return code
+        with _interruptible():
+            return _commanded(arguments)
     except RotctlError as error:
+        from rotctl.choices.override_files import blamed
+
         complaint = blamed(getattr(arguments, "overrides", ()), str(error))
         print(f"rotctl: {one_line(complaint)}", file=sys.stderr)
         return error.exit_code
@@ -64,22 +58,51 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
 
 
+def _commanded(arguments: argparse.Namespace) -> int:
+    """Do what a command line says; its exit code."""
+    from rotctl.choices.listing import own  # reads YAML: who asks for help need not wait for it
+    from rotctl.choices.override_files import expanded
+
+    if "overrides" in arguments:
+        arguments.overrides = expanded(arguments.overrides)
+    gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
+    with own(arguments.config_dir):
+        code = int(arguments.command(arguments))
+        if sys.stdout:  # None where the shell has closed it
+            sys.stdout.flush()
+        return code
+
+
 @contextmanager
-def _terminated_like_interrupted() -> Iterator[None]:
-    """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does."""
+def _interruptible() -> Iterator[None]:
+    """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does.
+
+    Whoever calls Python from C may lose what a signal raises: of one that comes while MuJoCo is
+    imported nothing is left but an ImportError.
+    """
+    came = False
 
     def interrupt(signum: int, frame: object) -> NoReturn:
+        nonlocal came
+        came = True
         raise KeyboardInterrupt
 
+    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # else it is ignored
+    numbers = (signal.SIGTERM, signal.SIGINT) if usual else (signal.SIGTERM,)
     try:
-        before = signal.signal(signal.SIGTERM, interrupt)
+        before = [(number, signal.signal(number, interrupt)) for number in numbers]
     except ValueError:  # not the main thread, which alone gets signals
         yield
         return
     try:
         yield
+    except Exception:
+        if came:
+            raise KeyboardInterrupt from None
+        raise
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before:
+            signal.signal(number, handler)
 
 
 def _drop_stdout() -> None:
