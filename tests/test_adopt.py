@@ -191,6 +191,18 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     assert yaml.safe_load((tmp_path / out).read_text())["gains_for"] == {"height": 1.75, "mass": 70}
     assert main(["run", "character=mine", "duration=0.3", "--quiet"]) == 0
     assert main(["inspect-model", str(robot), "--out", "a.xml"]) == 2
+    (tmp_path / out).write_text("edited by hand")
+    assert main(["inspect-model", str(robot), "--out", out]) == 2
+    said = f"rotctl: --out={out}: is there already; give the character another name\n"
+    assert capsys.readouterr().err.endswith(said)
+    assert (tmp_path / out).read_text() == "edited by hand"
+    usual = "conf/character/adult.yaml"
+    assert main(["inspect-model", str(robot), "--out", usual]) == 2
+    assert capsys.readouterr().err == (
+        f"rotctl: {usual}: there is a character of that name that comes with rotctl; give yours "
+        "another\n"
+    )
+    assert not (tmp_path / usual).exists()
     assert main(["inspect-model", str(robot), "--map", "left_hip=no"]) == 2
     assert "--map left_hip=no: no such body; its bodies: " in capsys.readouterr().err
 

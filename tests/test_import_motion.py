@@ -248,6 +248,15 @@ def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
         assert (code, error) == (0, "")
         assert said.endswith(f"clip       {out}\nfilmstrip  {out.with_suffix('.png')}\n")
     assert load_clip(str(out)) == load_clip("log_roll")
+    mine = tmp_path / "mine"
+    (mine / "motion").mkdir(parents=True)
+    own = ("--out", mine / "motion" / "log_roll.yaml", "--config-dir", mine)
+    assert cli("author-motion", keys, *own) == (
+        2,
+        "",
+        f"rotctl: {own[1]}: there is a motion of that name that comes with rotctl; give yours "
+        "another\n",
+    )
     picture = tmp_path / "preview.png"
     assert cli("preview-motion", "log_roll", "--out", picture, "--frames", 2) == (
         0,

@@ -79,6 +79,22 @@ def test_a_choice_of_ones_own_names_a_model(here, capsys):
     assert (shown["strength"], shown["mass"]) == (3.0, 50)
 
 
+def test_a_choice_is_called_by_its_own_name(here, capsys):
+    """And not by the model's, of which there may be several choices."""
+    folder = here / "conf/character"
+    (folder / "first.yaml").write_text("{kind: mjcf, file: robot.xml}")
+    (folder / "second.yaml").write_text("{kind: mjcf, file: robot.xml, name: other}")
+    (folder / "third.yaml").write_text("# Mine.\n{kind: mjcf, file: robot.xml, strength: 2}")
+    with own(None):
+        assert load(["character=first"]).character.name == "first"
+        assert load(["character=second"]).character.name == "other"
+    assert main(["list", "character"]) == 0
+    told = {line.split()[0]: line for line in capsys.readouterr().out.splitlines() if line}
+    assert told["first"].split("  [")[0] == "  first            robot.xml"
+    assert " robot.xml (its runs say other)  [" in told["second"]
+    assert " Mine.  [" in told["third"]
+
+
 def test_a_sweep_over_bodies(here, capsys):
     (here / "conf/character/mine.yaml").write_text("{kind: mjcf, file: robot.xml}")
     sweep = ["sweep", "character=mine,adult", "duration=0.1", "--out", "sweeps", "--jobs", "1"]
@@ -124,6 +140,12 @@ def test_a_file_without_its_kind_is_told_of_it(here):
     ("overrides", "expected"),
     [
         (["character={kind: mjcf}"], "character: file: missing, it cannot be left out"),
+        (["character={kind: mjcf, file: ''}"], "character: file='': is empty; name the model"),
+        (
+            [INLINE, "character.collision=hulls"],
+            "robot.xml: character.collision=hulls: acts on nothing, as none of its shapes is a "
+            "mesh here",
+        ),
         (["character={kind: urdf, file: robot.xml}"], "character: kind=\"urdf\": must be 'mjcf'"),
         (["character={kind: mjcf, file: none.xml}"], "none.xml: no such file"),
         ([INLINE, "~character.roles"], "~character.roles: a model's keys are given, not removed"),
@@ -135,7 +157,7 @@ def test_what_makes_none_is_told(overrides, expected):
 
 def test_an_unknown_key_is_told():
     assert complaint(INLINE, "character.hight=2").startswith(
-        "unknown key 'hight'; did you mean height? valid keys under character: "
+        "unknown key 'character.hight'; did you mean height? valid keys under character: "
         "kind, file, roles, meshes, collision, proxies, name, height,"
     )
 

@@ -7,6 +7,7 @@ import mujoco
 
 from rotctl.adopting.meshes import boxed
 from rotctl.adopting.proxies import only_these_touch
+from rotctl.errors import InputError
 from rotctl.mechanics.foreign import BONES, compiled, forget_meshes, is_mesh, read_mjcf
 
 _MOTORS = ("actuator", "motor", "general", "position", "velocity")
@@ -29,11 +30,13 @@ def solid(
         The model, and notes on what was left out.
 
     Raises:
-        InputError: it is no model with hinges on a free root, or has no such proxies.
+        InputError: it is no model with hinges on a free root, or has no such proxies or no meshes.
     """
     root = read_mjcf(path)
     notes = boxed(path, root, hulls=hulls) if meshes else []
     known = {mesh.get("name", "") for mesh in root.iter("mesh") if "vertex" in mesh.attrib}
+    if hulls and not (known and meshes):
+        raise InputError(f"{path}: --hulls: acts on nothing, as none of its shapes is a mesh here")
     missing = _keep_shapes(root, known if meshes else set())
     if missing:
         notes.append(f"{missing} shapes that are meshes are left out")

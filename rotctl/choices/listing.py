@@ -234,9 +234,12 @@ def _described(path: Path) -> str:
         named_file(path.parent.name, path.stem)  # of which there must be one
         if is_word_of_yaml(path.stem):
             raise InputError(f"YAML takes {path.stem} for something else; give it another name")
-        description = content(path).get("description")
+        data = content(path)
         text = files.text(path, documents.LARGEST, linked=True)
-        return " ".join(str(description or _first_comment(text)).split())
+        told = data.get("description") or _first_comment(text) or data.get("file", "")  # a model
+        called = data.get("name", path.stem)
+        told = f"{told} (its runs say {called})" if called != path.stem else told
+        return " ".join(str(told).split())
     except InputError as error:
         return f"cannot be used: {error}"
 

@@ -12,6 +12,7 @@ from rotctl.choices.listing import (
     named_file,
     named_files,
     own_dir,
+    shipped_files,
 )
 from rotctl.errors import InputError
 from rotctl.settings import documents
@@ -67,6 +68,19 @@ def free(kind: str, name: str) -> Path:
     if name in there:
         raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
     return (own_dir() or Path("conf")) / kind / f"{name}.yaml"
+
+
+def require_own_name(kind: str, path: Path) -> None:
+    """See that a file that goes into the user's folder is called as none that comes with rotctl.
+
+    Raises:
+        InputError: it is; nobody could choose it, nor rotctl's.
+    """
+    mine, there = own_dir(), shipped_files(kind)
+    if mine and path.stem in there and path.parent.resolve() == (mine / kind).resolve():
+        raise InputError(
+            f"{path}: there is a {kind} of that name that comes with rotctl; give yours another"
+        )
 
 
 def write(path: Path, text: str) -> Path:

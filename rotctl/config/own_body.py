@@ -48,7 +48,7 @@ class Named(NamedTuple):
     """A model that overrides ask for.
 
     Attributes:
-        data: that names it, as written; folder: that its file is in.
+        data: that names it, as written, and called as the choice is; folder: of its file.
         changes: keys below `character` with what they are to be.
         others: overrides that are about something else.
     """
@@ -107,6 +107,8 @@ def converted(model: Named) -> dict[str, Any]:
         body = checked(OwnBody, ours)
     except InputError as error:
         raise InputError(f"{GROUP}: {error}") from None
+    if not body.file:
+        raise InputError(f"{GROUP}: file='': is empty; name the model")
     path = model.folder / body.file
     roles, fitted = tuple(body.roles.items()), body.meshes == "fitted"
     hulls = body.collision == "hulls"
@@ -114,7 +116,7 @@ def converted(model: Named) -> dict[str, Any]:
     for parts, value in over:
         if plain.find(data, parts) is plain.NOTHING:
             valid = [*OwnBody.__dataclass_fields__, *data]
-            raise InputError(unknown_key(plain.dotted(parts), GROUP, valid))
+            raise InputError(unknown_key(plain.dotted((GROUP, *parts)), GROUP, valid))
         data = plain.put(data, parts, value)
     if data["name"] in list(shipped_files(GROUP)):
         raise InputError(
@@ -140,7 +142,8 @@ def _adopted(
         found = adopt(path, path.stem, dict(roles), meshes=meshes, hulls=hulls, proxies=proxies)
     except InputError as error:
         said = str(error).replace("--map ", f"+{GROUP}.roles.")
-        raise InputError(said.replace("--proxies ", f"{GROUP}.proxies=")) from None
+        said = said.replace("--proxies ", f"{GROUP}.proxies=")
+        raise InputError(said.replace("--hulls", f"{GROUP}.collision=hulls")) from None
     return {**found.character, "description": "\n".join([path.name, *found.notes])}
 
 
@@ -165,7 +168,7 @@ def _data(text: str) -> tuple[dict[str, Any], Path] | None:
         return None
     path = named_file(GROUP, str(one.value))
     data = content(path) if is_own(path) else {}
-    return (data, path.parent) if _is_meant(data) else None
+    return ({"name": str(one.value), **data}, path.parent) if _is_meant(data) else None
 
 
 def _is_meant(data: dict[str, Any]) -> bool:

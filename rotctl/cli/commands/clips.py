@@ -157,9 +157,11 @@ def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     """Write a clip; returns where it is."""
     from rotctl import files
     from rotctl.motion.writing import text
+    from rotctl.choices.own_folder import require_own_name
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
     files.require_ending(out, ".yaml")
+    require_own_name("motion", out)
     if out.exists() and out.samefile(arguments.file):
         raise InputError(f"--out={out}: is the file that is read; give the clip another name")
     with files.folder(out.parent, linked=True):  # conf/motion, before there is any

@@ -103,11 +103,15 @@ def inspect_model(arguments: argparse.Namespace) -> int:
 
     from rotctl import files
     from rotctl.adopting import adopt
+    from rotctl.choices.own_folder import require_own_name
     from rotctl.cli.wording import adopted
 
     out = arguments.out
     if out is not None:
         files.require_ending(out, ".yaml")
+        require_own_name("character", out)
+        if os.path.lexists(out):  # edited by hand, as what it writes is meant to be
+            raise InputError(f"--out={out}: is there already; give the character another name")
     name, roles = (out or arguments.file).stem, dict(arguments.map)
     proxies = tuple(arguments.proxies)
     found = adopt(arguments.file, name, roles, hulls=arguments.hulls, proxies=proxies)
