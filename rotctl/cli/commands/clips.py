@@ -156,8 +156,8 @@ def _model(character: str) -> "Model":
 def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     """Write a clip; returns where it is."""
     from rotctl import files
-    from rotctl.motion.writing import text
     from rotctl.choices.own_folder import require_own_name
+    from rotctl.motion.writing import text
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
     files.require_ending(out, ".yaml")
