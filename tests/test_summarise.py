@@ -20,7 +20,7 @@ from rotctl.results import index
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
-from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
+from rotctl.results.stored_runs import DONE, MISSING, StoredRun, stored_runs
 from rotctl.results.table import Table, differing, table, tabulated
 from rotctl.runs.run import make, run
 
@@ -265,6 +265,25 @@ def test_a_run_that_is_not_there_is_told_in_its_group(tmp_path):
     assert list(rows.index) == ["forward_roll_1", "stand"]
     assert (rows["n"]["stand"], rows["no_result"]["stand"]) == (1, 1)
     assert rows["controller"]["stand"] == "standing"
+
+
+def test_runs_that_are_not_put_into_their_groups_are_told():
+    """Which group a run without a result is of is looked up for so many sweeps and no more."""
+    config = {"behaviour": {"name": "roll"}, "character": {"name": "adult"}, "seed": 0}
+    there = StoredRun("there", DONE, outcome={"success": True}, config=config)
+    other = {**config, "character": {"name": "baby"}, "behaviour": {"name": "crawl"}}
+    another = StoredRun("another", DONE, outcome={"success": True}, config=other)
+    lacking = [
+        StoredRun(f"{i}", MISSING, values={"behaviour": "roll", f"x.k{i}": i, "seed": 1})
+        for i in range(22)
+    ]
+    (*_, note, missing) = tabulated([there, another, *lacking], []).notes
+    assert missing.startswith("22 runs of the sweep are not there")
+    assert note == (
+        "2 runs without a result stand apart from their groups, which are looked up for those of "
+        "20 sweeps; here are 22"
+    )
+    assert len(tabulated([there, another, *lacking[:20]], []).notes) == 1
 
 
 def test_rows_whose_logs_are_not_there_are_told(sweep, tmp_path, capsys):

@@ -75,15 +75,20 @@ def tabulated(runs: Sequence[StoredRun], notes: list[str]) -> Table:
                 "trajectory": run.trajectory,
             }
         )
-    _fill(rows, runs, columns)
+    notes = notes + _fill(rows, runs, columns)
     rows.sort(key=lambda row: [_order(row[name]) for name in [*columns.values(), "run_id"]])
     return Table(pd.DataFrame(rows), list(columns.values()), metrics, notes + _missing(runs))
 
 
-def _fill(rows: list[dict[str, Any]], runs: Sequence[StoredRun], columns: dict[str, str]) -> None:
+def _fill(
+    rows: list[dict[str, Any]], runs: Sequence[StoredRun], columns: dict[str, str]
+) -> list[str]:
     """Give rows without a config what all runs have of whom the sweep says the same but the seed.
 
     So a run that is not there is told beside those of its group, and makes none of its own.
+
+    Returns:
+        Notes on those of which that was not looked for.
     """
     known = [row for row, run in zip(rows, runs, strict=True) if run.config]
     lacking: dict[tuple[str, ...], list[dict[str, Any]]] = {}
@@ -102,6 +107,13 @@ def _fill(rows: list[dict[str, Any]], runs: Sequence[StoredRun], columns: dict[s
             found = alike.get(tuple(row[name] for name in told), [])
             named = zip(others, found, strict=False)  # of none there is nothing
             row |= {name: next(iter(values)) for name, values in named if len(values) == 1}
+    left = sum(len(lacking[told]) for told in list(lacking)[MOST_SWEEPS:])
+    if not left:
+        return []
+    return [
+        f"{left} runs without a result stand apart from their groups, which are looked up for "
+        f"those of {MOST_SWEEPS} sweeps; here are {len(lacking)}"
+    ]
 
 
 def _columns(keys: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
