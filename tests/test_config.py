@@ -621,3 +621,9 @@ def test_keys_of_what_may_be_null_are_listed(sign):
     with pytest.raises(InputError) as error:
         load(["behaviour=decline", f"{sign}behaviour.pace.halt=1"])
     assert "valid keys under behaviour.pace: keep, travel, own, " in str(error.value)
+
+
+def test_of_two_choices_that_are_added_the_later_one_counts():
+    roll, seat, rest = "behaviour=forward_roll", "+finish=seat", ["+course=circle", "+finish=stand"]
+    assert load([roll, seat, *rest]) == load([roll, *rest])
+    assert load([roll, seat, "finish=stand"]) == load([roll, "+finish=stand"])

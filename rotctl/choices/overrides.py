@@ -105,19 +105,26 @@ def single(override: str) -> Override:
 
 
 def without_overruled(overrides: list[str]) -> list[str]:
-    """Without those that have several values, where a later one sets the same key.
+    """Without those that a later one of the same key replaces and Hydra would not have replaced.
 
-    So a file of overrides that is for a sweep is for a run, too.
+    Such are those of several values, as in a file of overrides that is for a sweep, and choices
+    that are added: `+finish=stand` before `+finish=seat`.
 
     Raises:
         InputError: one of them cannot be read.
     """
-    keys = [override.partition("=")[0].lstrip("+") for override in overrides]
-    return [
-        override
-        for number, (key, override) in enumerate(zip(keys, overrides, strict=True), 1)
-        if key not in keys[number:] or not parsed(override).is_sweep_override()
-    ]
+    told = [override.partition("=")[0] for override in overrides]
+    keys = [key.lstrip("+") for key in told]
+
+    def stays(number: int, override: str) -> bool:
+        if keys[number] not in keys[number + 1 :]:
+            return True
+        added = told[number].startswith("+") and choices(keys[number])
+        if added and told[number] in told[number + 1 :]:
+            return False
+        return not parsed(override).is_sweep_override()
+
+    return [override for number, override in enumerate(overrides) if stays(number, override)]
 
 
 def assigned(found: Override) -> Assignment | None:

@@ -165,7 +165,7 @@ def judge(arguments: argparse.Namespace) -> int:
     wanted = criteria(arguments.overrides, none=bool(metrics))
     with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
         found = judge(folder, wanted, engine, shown.update, metrics)
-    groups = grouped(found.table, arguments.by.split(",") if arguments.by else None)
+    groups = grouped(found.table, None if arguments.by is None else arguments.by.split(","))
     path = folder / "judged.csv"
     files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(printable(markdown(groups)), end="\n\n")
@@ -202,7 +202,7 @@ def summarise(arguments: argparse.Namespace) -> int:
     from rotctl.results.table import table
 
     found = table(arguments.folder)
-    groups = grouped(found, arguments.by.split(",") if arguments.by else None, arguments.mixed)
+    groups = grouped(found, None if arguments.by is None else arguments.by.split(","), arguments.mixed)
     paths = written(arguments.folder, found.rows, groups.rows)  # before a reader may hang up
     print(printable(markdown(groups)), end="\n\n")
     print(*paths, sep="\n")
