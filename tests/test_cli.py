@@ -152,6 +152,13 @@ def test_overrides_and_options_may_be_mixed(cli, made):
          "see rotctl run --help"),
         (["summarise", ""], "rotctl summarise: argument DIR: the name is empty; "
          "see rotctl summarise --help"),
+        (["summarise", "x", "--by", ""], "rotctl summarise: argument --by: names no column; "
+         "see rotctl summarise --help"),
+        (["show", "+experiment=table1"], "rotctl: +experiment=table1: is for sweeps: "
+         "rotctl sweep +experiment=NAME"),
+        ([*RUN, "experiment=table1"], "rotctl: experiment=table1: is for sweeps: "
+         "rotctl sweep +experiment=NAME"),
+        (["sweep", "experiment=table1"], "rotctl: experiment=table1: write +experiment=table1"),
         (["verify", ""], "rotctl verify: argument RUN.h5: the name is empty; "
          "see rotctl verify --help"),
         (["render", "x.h5", "--filmstrip", "x.png", "--video", "x.avi"],

@@ -191,6 +191,7 @@ def test_further_overrides_replace_its_own():
 @pytest.mark.parametrize(
     ("overrides", "message"),
     [
+        (["+experiment="], "+experiment=: no such experiment; valid: " + ", ".join(names())),
         (["+experiment=no"], "+experiment=no: no such experiment; valid: " + ", ".join(names())),
         (
             ["+experiment=forward_roll_1", "+experiment=b"],

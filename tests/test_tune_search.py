@@ -309,6 +309,11 @@ def test_minutes_are_kept_but_one_generation_is_tried(space, tmp_path):
         (["rolling_gains", "seed=5"], "rotctl: seed=5: tune draws the seeds of its runs itself"),
         (["rolling_gains", "--jobs", "0"], "rotctl: --jobs=0: valid: 1 to 1024"),
         (["rolling_gains", "x=1"], "rotctl: unknown key 'x'"),
+        (["rolling_gains", "duration=0.001"], "rotctl: duration=0.001 s is no whole number of "),
+        (
+            ["clip_pace", "+finish=stand", "criteria=finish"],
+            "rotctl: criteria=finish is of kind finish; a search judges by kind rolling, and so a ",
+        ),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(arguments, said, tmp_path, capsys):

@@ -70,6 +70,17 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
         (["parameters", 1, "high"], 100.0, "parameters.1: low=200 must be below high=100"),
         (["parameters", 1, "low"], -1.0, "parameters.1: low=-1 must be above 0 on a log scale"),
         (["parameters", 1, "low"], "1", 'parameters.1.low="1": must be a valid number'),
+        (
+            ["parameters", 1, "start"],
+            1e6,
+            "parameters.1: start=1e+06 must be within its range, 200 to 2000",
+        ),
+        (
+            ["runs", "variations"],
+            [[], ["controller.pose.stiffness=900"]],
+            "runs.variations.1: controller.pose.stiffness=900: acts on nothing, as that is "
+            "searched and a candidate has its own value",
+        ),
         (["parameters", 1, "scale"], "x", "parameters.1.scale=\"x\": must be 'linear' or 'log'"),
         (
             ["parameters", 1, "key"],

@@ -90,6 +90,8 @@ def single(override: str) -> Override:
     """
     found, shown = parsed(override), f"override {clip(override)!r}"
     key = str(found.key_or_group)
+    if key == "experiment":
+        raise InputError(f"{clip(override)}: is for sweeps: rotctl sweep +experiment=NAME")
     if found.is_sweep_override():
         raise InputError(f"{shown}: run takes one value for {key}; rotctl sweep takes many")
     if found.is_delete():

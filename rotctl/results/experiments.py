@@ -113,11 +113,17 @@ def named(overrides: list[str]) -> str:
     """The experiment that a command line names; empty if it names none.
 
     Raises:
-        InputError: it names more than one.
+        InputError: it names more than one, or one that there is not.
     """
+    for override in overrides:
+        if override.startswith(PREFIX.removeprefix("+")):
+            shown = checking.clip(override)
+            raise InputError(f"{shown}: write +{shown}")
     found = [o.removeprefix(PREFIX) for o in overrides if o.startswith(PREFIX)]
     if len(found) > 1:
         raise InputError(f"{PREFIX}{found[1]}: one experiment a sweep")
+    if found:
+        _path(found[0])
     return found[0] if found else ""
 
 

@@ -41,11 +41,8 @@ def attempt(item: Attempt) -> TrialRun:
     Raises:
         InputError: the config does not make a run.
     """
-    config, behaviour, criteria = item.config, item.config.behaviour, item.config.criteria
-    if not isinstance(behaviour, RollingSettings) or not isinstance(criteria, RollingCriteria):
-        raise InputError(
-            f"behaviour={behaviour.name} is of kind {behaviour.kind}; a search is for kind rolling"
-        )
+    config = item.config
+    behaviour, criteria = searchable(config)
     scenario = build(config)
     commanded, period = behaviour.angular_velocity, 1.0 / config.controller.rate
     buffer, _ = in_memory(scenario, look=hopeless(item.stopping, commanded))
@@ -62,6 +59,25 @@ def attempt(item: Attempt) -> TrialRun:
         success=not judged.reason,
         columns={name: float(found.get(name, nan)) for name in item.columns},
     )
+
+
+def searchable(config: Config) -> tuple[RollingSettings, RollingCriteria]:
+    """What of a config a search is about.
+
+    Raises:
+        InputError: it is no roll, or one that ends.
+    """
+    behaviour, criteria = config.behaviour, config.criteria
+    if not isinstance(behaviour, RollingSettings):
+        raise InputError(
+            f"behaviour={behaviour.name} is of kind {behaviour.kind}; a search is for kind rolling"
+        )
+    if not isinstance(criteria, RollingCriteria):
+        raise InputError(
+            f"criteria={criteria.name} is of kind {criteria.kind}; a search judges by kind "
+            "rolling, and so a roll without a finish"
+        )
+    return behaviour, criteria
 
 
 def _value(metric: Expression, log: Arrays, config: Config) -> float:

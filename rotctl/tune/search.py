@@ -10,8 +10,11 @@ from statistics import fmean, median
 from typing import Any
 
 from rotctl.errors import InputError
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
 from rotctl.sweep.engines import Engine
 from rotctl.sweep.lock import locked
+from rotctl.tune.attempt import searchable
 from rotctl.tune.batches import Evaluator
 from rotctl.tune.choice import BEST, Candidate, choose
 from rotctl.tune.history import History, Trial, by_generation, open_history
@@ -20,6 +23,7 @@ from rotctl.tune.sampler import Generations, centre, need_extra, propose
 from rotctl.tune.space import SamplerName, Space, load_space
 from rotctl.tune.values import (
     Values,
+    configs,
     final_seeds,
     start_values,
     training_seeds,
@@ -121,6 +125,7 @@ def tune(
     space = search.space
     data = variations(space, search.overrides)
     start = start_values(space, data[0])
+    _require_runs(search, data, start)
     with locked(folder) as notice:
         if notice:
             watch.line(notice)
@@ -133,6 +138,18 @@ def tune(
         seeds = final_seeds(space, search.seed)
         first, others = choose(evaluator, start, trials, mean, seeds)
     return SearchResult(search, data[0], trials, first, others)
+
+
+def _require_runs(search: Search, data: list[Any], start: Values) -> None:
+    """See that what the search starts from makes runs, before there is a folder for them.
+
+    Raises:
+        InputError: a variation does not; one line that says why.
+    """
+    seeds = training_seeds(search.space, search.seed, 0)[: len(data)]
+    for config in configs(data, start, seeds):
+        searchable(config)
+        in_memory(build(config), look=lambda buffer, done: True)  # its first step
 
 
 def _searched(

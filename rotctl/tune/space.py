@@ -86,6 +86,10 @@ class Parameter:
             raise ValueError("key must be dotted names, as in controller.tasks.linear.damping.0")
         if self.low >= self.high:
             raise ValueError(f"low={self.low:g} must be below high={self.high:g}")
+        if self.start is not None and not self.low <= self.start <= self.high:
+            raise ValueError(
+                f"start={self.start:g} must be within its range, {self.low:g} to {self.high:g}"
+            )
         if self.scale == "log" and self.low <= 0:
             raise ValueError(f"low={self.low:g} must be above 0 on a log scale")
 
@@ -250,6 +254,13 @@ class Space:
         twice = next((key for key in keys if keys.count(key) > 1), None)
         if twice:
             raise ValueError(f"parameters name {twice} twice")
+        for number, changes in enumerate(self.runs.variations):
+            for override in changes:
+                if override.partition("=")[0].lstrip("+~") in keys:
+                    raise ValueError(
+                        f"runs.variations.{number}: {override:.60}: acts on nothing, as that is "
+                        "searched and a candidate has its own value"
+                    )
 
 
 def names() -> list[str]:

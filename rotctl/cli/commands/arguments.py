@@ -81,6 +81,13 @@ def name_and_text(text: str) -> tuple[str, str]:
     return name.strip(), rest
 
 
+def keys(text: str) -> list[str]:
+    """behaviour,controller: columns."""
+    if not text:
+        raise argparse.ArgumentTypeError("names no column")
+    return text.split(",")
+
+
 def role_and_name(text: str) -> tuple[str, str]:
     """left_hip=Bone_7: which joint or body is what."""
     from rotctl.motion.naming import ROLES

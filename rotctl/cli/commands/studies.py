@@ -8,6 +8,7 @@ from rotctl.bars import bar, bars, following
 from rotctl.cli.commands.arguments import (
     OVERRIDES_HELP,
     Commands,
+    keys,
     name_and_text,
     path_name,
     run_folder,
@@ -135,7 +136,9 @@ def add_judge(commands: Commands) -> None:
     command.add_argument(
         "--metrics", type=path_name, metavar="FILE.yaml", help="NAME: EXPRESSION, one a line"
     )
-    command.add_argument("--by", metavar="KEY,KEY", help="columns to group by, as in summarise")
+    command.add_argument(
+        "--by", type=keys, metavar="KEY,KEY", help="columns to group by, as in summarise"
+    )
     command.add_argument("--jobs", type=int, metavar="N", help="local processes [one for each CPU]")
     command.set_defaults(command=judge, interrupted="nothing was judged")
 
@@ -165,7 +168,7 @@ def judge(arguments: argparse.Namespace) -> int:
     wanted = criteria(arguments.overrides, none=bool(metrics))
     with closing(make_engine(arguments.jobs, None)) as engine, bar("judging", "run") as shown:
         found = judge(folder, wanted, engine, shown.update, metrics)
-    groups = grouped(found.table, None if arguments.by is None else arguments.by.split(","))
+    groups = grouped(found.table, arguments.by)
     path = folder / "judged.csv"
     files.replace(path, files.encoded(found.table.rows.to_csv(index=False)))
     print(printable(markdown(groups)), end="\n\n")
@@ -188,7 +191,10 @@ def add_summarise(commands: Commands) -> None:
     )
     command.add_argument("folder", type=path_name, metavar="DIR")
     command.add_argument(
-        "--by", metavar="KEY,KEY", help="columns to group by [the overridden keys but the seed]"
+        "--by",
+        type=keys,
+        metavar="KEY,KEY",
+        help="columns to group by [the overridden keys but the seed]",
     )
     command.add_argument(
         "--mixed", action="store_true", help="average over runs of different code all the same"
@@ -202,7 +208,7 @@ def summarise(arguments: argparse.Namespace) -> int:
     from rotctl.results.table import table
 
     found = table(arguments.folder)
-    groups = grouped(found, None if arguments.by is None else arguments.by.split(","), arguments.mixed)
+    groups = grouped(found, arguments.by, arguments.mixed)
     paths = written(arguments.folder, found.rows, groups.rows)  # before a reader may hang up
     print(printable(markdown(groups)), end="\n\n")
     print(*paths, sep="\n")
