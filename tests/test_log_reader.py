@@ -128,6 +128,15 @@ def test_a_changed_attribute_is_caught(path):
         RunLog.open(path).verify()
 
 
+@pytest.mark.parametrize(("axis", "label"), [("joint", b"nobody"), ("time", 9.0), ("xyz", b"q")])
+def test_a_changed_label_is_caught(path, axis, label):
+    """Who reads a log by names, as xarray does, takes the joint of that name."""
+    with h5py.File(path, "r+") as file:
+        file[axis][0] = label
+    with pytest.raises(LogError, match=f"damaged, its axis '{axis}' is labelled otherwise$"):
+        RunLog.open(path).verify()
+
+
 def test_random_damage_is_caught_or_harmless(path):
     """Whatever bit flips, the log is refused or says exactly what it said before."""
     whole = path.read_bytes()

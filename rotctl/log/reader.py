@@ -13,6 +13,7 @@ from rotctl.errors import LogError
 from rotctl.log import untrusted
 from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.outcome import outcome_of
+from rotctl.log.scales import labels
 from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
 from rotctl.suggestion import meant
 
@@ -171,6 +172,10 @@ class RunLog(Mapping[str, NDArray[Any]]):
             # Block by block: a log may be larger than the memory.
             datasets = {name: self._checked(file, name) for name in self.names}
             whole = simulated(datasets)
+            for axis, along in labels(datasets).items():
+                scale = untrusted.scale(file, axis)
+                if scale is not None and not _same(scale, along):
+                    raise LogError(f"{self.path}: damaged, its axis {axis!r} is labelled otherwise")
         found = content_sha256(whole, self.attributes)
         if found != self.attributes["content_sha256"]:
             raise LogError(f"{self.path}: damaged, its content does not match its SHA-256")
@@ -197,6 +202,12 @@ class RunLog(Mapping[str, NDArray[Any]]):
             return encoded.decode("utf-8")
         except UnicodeDecodeError as error:
             raise LogError(f"{self.path}: damaged, text is not UTF-8") from error
+
+
+def _same(scale: h5py.Dataset, along: Any) -> bool:
+    """Whether a stranger's labels are these; what is of another size is not read."""
+    alike = scale.shape == along.shape and scale.dtype == along.dtype
+    return alike and bool(np.array_equal(scale[()], along[()]))
 
 
 def _check_unit(name: str, dataset: h5py.Dataset) -> None:

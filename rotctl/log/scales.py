@@ -60,6 +60,12 @@ def coordinates(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     return {name: arrays[source] for name, source in _NAMES.values() if source}
 
 
+def labels(arrays: Mapping[str, Any]) -> dict[str, Any]:
+    """Scale -> what is along its axis where that is no number from 0; to check those of a log."""
+    told = {name: arrays[source] for name, source in _NAMES.values() if source in arrays}
+    return {**told, **{name: np.array(along) for name, along in _LABELS.items()}}
+
+
 def _coordinates(dim: str, source: NDArray[Any] | None, sizes: Mapping[str, int]) -> NDArray[Any]:
     """What is along an axis: times and names where there are some, else numbers from 0."""
     if source is not None:

@@ -131,7 +131,7 @@ def datasets(file: h5py.File) -> dict[str, h5py.Dataset]:
     for group_name in file:
         group = _child(file, group_name)
         if group_name in scales.NAMES and isinstance(group, h5py.Dataset):
-            continue  # never read: it says again what is in a group
+            continue  # says again what is in a group, see `scale`
         if group_name not in GROUPS or not isinstance(group, h5py.Group):
             raise LogError(f"unknown object {group_name!r}")
         for name in group:
@@ -171,8 +171,19 @@ def dataset(file: h5py.File, group_name: str, name: str) -> h5py.Dataset:
     Raises:
         LogError: it is something else.
     """
-    path = f"{group_name}/{name}"
-    found = _child(_child(file, group_name), name)
+    return _safe(_child(_child(file, group_name), name), f"{group_name}/{name}")
+
+
+def scale(file: h5py.File, name: str) -> h5py.Dataset | None:
+    """Returns what is along an axis, of a log that says it.
+
+    Raises:
+        LogError: as for `dataset`.
+    """
+    return _safe(_child(file, name), name) if name in file else None
+
+
+def _safe(found: Any, path: str) -> h5py.Dataset:
     if not isinstance(found, h5py.Dataset):
         raise LogError(f"unknown object {path!r}")
     if found.is_virtual:
