@@ -166,6 +166,8 @@ def _path(name: str, path: str | Path) -> Path:
     """
     if not isinstance(path, str | PathLike):
         raise InputError(f"{name}: must be a path, not of {_kind(path)}")
+    if not str(path):  # a name that was forgotten, and not this folder
+        raise InputError(f"{name}: is empty; '.' is this folder")
     return Path(path)
 
 

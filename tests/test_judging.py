@@ -105,7 +105,7 @@ def test_runs_that_cannot_be_judged_are_told(tmp_path, capsys, monkeypatch):
     swept(tmp_path, *GRID, "--keep", "sample:1")
     without_processes(monkeypatch)
     assert main(["judge", str(tmp_path), STRICT]) == 0
-    assert "1 runs not judged: its log was not kept; rotctl sweep" in capsys.readouterr().err
+    assert "1 run not judged: its log was not kept; rotctl sweep" in capsys.readouterr().err
     assert main(["judge", str(tmp_path), "criteria=standing"]) == 2
     stderr = capsys.readouterr().err
     assert "no run can be judged: " in stderr

@@ -218,6 +218,7 @@ def test_no_file_is_named_for_how_two_of_ones_own_meet(here, capsys):
         (lambda: api.load(config_dir=3), "^config_dir: must be a path, not of type int$"),
         (lambda: api.sweep("seed=1,2", "out"), "^overrides: must be a list of texts"),
         (lambda: api.sweep(api.load([]), "out"), "^overrides: .*, not of type Config$"),
+        (lambda: api.sweep(["seed=1,2"], ""), "^out: is empty; '.' is this folder$"),
         (lambda: api.sweep(["seed=1,2"], None), "^out: must be a path, not of type NoneType$"),
         (lambda: api.sweep(["seed=1,2"], "out", jobs="2"), "^jobs: must be a number or None"),
         (lambda: api.read(api.load([])), "^path: must be a path, not of type Config$"),

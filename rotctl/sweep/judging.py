@@ -222,7 +222,9 @@ def judge(
     notes += [f"{count} runs: {remark}" for remark, count in remarks.items()]
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
-    notes += [f"{count} runs not judged: {reason}" for reason, count in untold.items()]
+    notes += [
+        f"{count} run{'s' * (count > 1)} not judged: {reason}" for reason, count in untold.items()
+    ]
     table = tabulated(list(found.values()), notes)
     table.rows[BEFORE] = table.rows["run_id"].map(before)
     return Judged(
