@@ -10,6 +10,8 @@ from rotctl.config.loading import composed
 from rotctl.config.schema import check
 from rotctl.control.kinds import KINDS
 from rotctl.errors import LONGEST, InputError, LogError
+from rotctl.log import RunLog
+from rotctl.runs.run import run
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
 
@@ -120,6 +122,12 @@ def complaint(chosen, changes):
          "disturbance.mass=-60: chest has 15.1 kg"),
         ([*STAND, "disturbance=slippery"], {"disturbance.friction": [0.0, 1.0]},
          "disturbance: friction must be a factor above 0 and at most 100"),
+        ([*STAND, "plant=varied"], {"terrain.friction": 10.0},
+         "plant.friction=[0.9, 1.1]: with terrain.friction=10 the ground has 9 to 11, valid: above "
+         "0 and at most 10"),
+        (STAND, {"plant.friction": [1.0, 50.0]},
+         "plant.friction=[1.0, 50.0]: with terrain.friction=1 the ground has 1 to 50, valid: above "
+         "0 and at most 10"),
         ([*STAND, "disturbance=load"], {"disturbance.mass": 1e9},
          "disturbance: mass must be at most 1000 kg"),
         ([*STAND, "disturbance=load"],
@@ -137,6 +145,15 @@ def complaint(chosen, changes):
 )  # fmt: skip
 def test_it_is_refused(chosen, changes, message):
     assert complaint(chosen, changes) == message
+
+
+def test_names_may_have_any_letters(tmp_path):
+    data = composed(STAND)
+    for body in data["character"]["bodies"]:
+        for joint in body["joints"] if body["name"] == "head" else ():
+            joint["name"] = joint["name"].replace("neck_z", "cou_à_gauche")
+    made = run(check(data), tmp_path).folder
+    assert "cou_à_gauche".encode() in RunLog.open(made / "run.h5")["model/joint"].tolist()
 
 
 def test_a_shape_that_is_not_flown_has_joints_too():

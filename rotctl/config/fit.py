@@ -17,6 +17,7 @@ from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
+from rotctl.mechanics.terrain.ground import MOST_FRICTION
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
@@ -43,6 +44,7 @@ def require_fit(config: Config, model: Model) -> None:
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
             f"physics={config.physics.name} give plant.predicted=false"
         )
+    _require_ground(config)
     _require_in_time(behaviour, config.duration)
     _require_end(behaviour, config.duration)
     outside = config.disturbance
@@ -118,6 +120,17 @@ def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
         raise InputError(
             f"physics.gravity.2={gravity[2]:g}: must be less than 0, as behaviour={behaviour.name} "
             "stands or falls by its weight; a roll without a finish turns without it"
+        )
+
+
+def _require_ground(config: Config) -> None:
+    """The ground of another plant is one that there may be, whatever is drawn."""
+    usual, factors = config.terrain.friction, config.plant.friction
+    least, most = (usual * factor for factor in factors)
+    if not 0.0 < least <= most <= MOST_FRICTION:
+        raise InputError(
+            f"plant.friction={brief(factors)}: with terrain.friction={usual:g} the ground has "
+            f"{least:g} to {most:g}, valid: above 0 and at most {MOST_FRICTION:g}"
         )
 
 

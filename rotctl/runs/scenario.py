@@ -104,9 +104,9 @@ def build(config: Config, making: Making = ANEW) -> Scenario:
     by = gains_likeness(config.character)
     control = similar(config.controller, by, config.behaviour.kinds)
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
+    require_fit(config, known)
     apart = config.plant.differs or config.disturbance.changes_model
     model = _varied(config, Variation(config.plant, plant)) if apart else known
-    require_fit(config, known)
     asked = asking(config.behaviour, by)
     behaviour = making.behaviour(asked, known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])

@@ -61,9 +61,9 @@ def simulate(
         )
     tasks = parts.behaviour.tasks
     buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity, len(tasks), mj.nbody)
-    buffer.model.body[:] = [mj.body(i).name for i in range(mj.nbody)]
-    buffer.model.task[:] = tasks
-    buffer.model.joint[:] = parts.model.joint_names
+    buffer.model.body[:] = [mj.body(i).name.encode() for i in range(mj.nbody)]
+    buffer.model.task[:] = [task.encode() for task in tasks]
+    buffer.model.joint[:] = [joint.encode() for joint in parts.model.joint_names]
     buffer.model.torque_limit[:] = parts.model.torque_limit
     episode = Episode(parts)
     compiled = compiled_periods(parts, episode, buffer)

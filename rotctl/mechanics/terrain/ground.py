@@ -10,7 +10,8 @@ from pydantic import Field
 from rotctl.maths.rotations import Array
 from rotctl.settings.fields import Positive
 
-Friction = Annotated[Positive, Field(le=10)]  # sliding friction of ground and character [-]
+MOST_FRICTION = 10.0  # [-]
+Friction = Annotated[Positive, Field(le=MOST_FRICTION)]  # sliding, of ground and character [-]
 
 CHARACTER_CONTACT = 1  # contype of the character's geoms
 GROUND_CONTACT = 2  # contype of the ground's geoms
