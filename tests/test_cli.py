@@ -307,7 +307,11 @@ def test_a_signal_that_an_import_loses_is_one_all_the_same(number, cli, monkeypa
             raise ImportError("initialization failed") from None
 
     monkeypatch.setattr("rotctl.cli.main.gl.chosen", imported)
-    assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background shell ignores it
+    try:
+        assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_a_reader_that_has_seen_enough_is_no_error():

@@ -188,7 +188,8 @@ def test_what_the_end_cuts_short_is_not_called_unrecovered():
 
 def test_a_roll_that_is_to_end_on_its_feet_and_breaks_off_has_not_recovered():
     config = load([*PUSH, "behaviour=forward_roll", "+finish=stand", "disturbance.impulse=1"])
-    buffer, _ = in_memory(build(replace(config, duration=2.0)))
+    told = replace(config.behaviour, finish=replace(config.behaviour.finish, after=1.5))
+    buffer, _ = in_memory(build(replace(config, behaviour=told, duration=2.0)))
     asked = config.behaviour.commanded
     whole, broken = (
         judge(buffer.arrays(), config.criteria, asked, 1 / 60, wanted).columns["recovered"]
