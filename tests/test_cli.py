@@ -307,7 +307,7 @@ def test_a_signal_that_an_import_loses_is_one_all_the_same(number, cli, monkeypa
             raise ImportError("initialization failed") from None
 
     monkeypatch.setattr("rotctl.cli.main.gl.chosen", imported)
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a background shell ignores it
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may ignore it
     try:
         assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")
     finally:
