@@ -23,7 +23,8 @@ from rotctl.metrics.claims import Claim, judge
 from rotctl.report.site import against, build, pictures
 from rotctl.report.site.build import report
 from rotctl.report.site.charts import charts
-from rotctl.report.site.folder import LIST
+from rotctl.report.site.folder import HEAD, LIST
+from rotctl.report.site.folder import write as write_report
 from rotctl.report.site.grid import grid
 from rotctl.report.site.panels import drawn
 from rotctl.report.site.rows import from_worst, rows
@@ -175,23 +176,21 @@ def test_replays_share_one_script(site):
         assert len(html) < 400_000
 
 
-@pytest.mark.parametrize("older", [False, True])  # a version of rotctl, whose reports have no list
-def test_the_same_runs_give_the_same_bytes_and_old_pages_go(made, site, tmp_path, older):
+def test_the_same_runs_give_the_same_bytes_and_old_pages_go(made, site, tmp_path):
     out, (old, mine) = tmp_path / "again", ("replays/old.html", "CNAME")
     (out / "replays").mkdir(parents=True)
     (out / old).touch()
     (out / mine).write_text("not ours")
-    if older:
-        (out / "replay.js").touch()
-    else:
-        (out / LIST).write_text(f"{old}\n{mine}\n../outside.html\nreplays/../../outside.html\n")
+    listed = (HEAD, old, mine, "../outside.html", "replays/../../outside.html")
+    (out / LIST).write_text("".join(f"{line}\n" for line in listed))
     (tmp_path / "outside.html").touch()
     report(made, out)
     again = content(out)
     assert again.pop(mine) == b"not ours"
     assert again == content(site)
     assert (tmp_path / "outside.html").exists()
-    assert set((out / LIST).read_text().split()) == again.keys() - {LIST}
+    there = again.keys() - {LIST}
+    assert (out / LIST).read_text().splitlines() == [HEAD, *sorted(there)]
 
 
 def test_files_of_others_stay(made, tmp_path, capsys):
@@ -203,15 +202,51 @@ def test_files_of_others_stay(made, tmp_path, capsys):
     for _ in range(2):
         report(made, tmp_path)
         assert mine < content(tmp_path).keys()
-    other = tmp_path / "other"
-    other.mkdir()
-    (other / "summary.md").write_text("mine")
-    assert main(["report", str(made), "--out", str(other)]) == 2
+
+
+@pytest.mark.parametrize("name", ["summary.md", "files.txt", "pictures", "sweeps"])
+def test_what_is_in_the_way_of_a_report_is_told(made, tmp_path, capsys, name):
+    (tmp_path / name).write_text("mine")
+    assert main(["report", str(made), "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err == (
-        f"rotctl: {other / 'summary.md'}: is there, and of no earlier report; choose another "
-        "--out\n"
+        f"rotctl: {tmp_path / name}: is there, and of no earlier report; choose another --out\n"
     )
-    assert content(other) == {"summary.md": b"mine"}
+    assert content(tmp_path) == {name: b"mine"}
+
+
+def test_a_link_to_nothing_is_not_replaced(tmp_path):
+    link = tmp_path / "index.html"
+    link.symlink_to("none")
+    with pytest.raises(InputError, match="index.html: is there, and of no earlier report"):
+        write_report({"index.html": b""}, tmp_path)
+    assert link.is_symlink()
+    assert [*tmp_path.iterdir()] == [link]
+
+
+def test_of_a_report_that_does_not_say_what_is_its_own_nothing_is_taken_away(tmp_path):
+    """As older versions made them."""
+    (tmp_path / "pictures").mkdir()
+    for name in ("index.html", "replay.js", "pictures/old.png"):
+        (tmp_path / name).write_text("old")
+    write_report({"index.html": b"new"}, tmp_path)
+    there = {"index.html": b"new", "replay.js": b"old", "pictures/old.png": b"old"}
+    assert content(tmp_path) == {**there, LIST: f"{HEAD}\nindex.html\n".encode()}
+
+
+def test_two_reports_at_once_are_both_listed(tmp_path, monkeypatch):
+    """The other begins and ends while the first one is written."""
+
+    def meanwhile(path, data):
+        if path.name == "first.html":
+            monkeypatch.undo()
+            (tmp_path / LIST).unlink()
+            write_report({"second.html": b""}, tmp_path)
+        replace_file(path, data)
+
+    monkeypatch.setattr("rotctl.report.site.folder.files.replace", meanwhile)
+    write_report({"first.html": b""}, tmp_path)
+    listed = ["first.html", "second.html"]
+    assert (tmp_path / LIST).read_text().splitlines() == [HEAD, *listed]
 
 
 def test_a_report_that_was_cut_off_is_made_again(made, site, tmp_path, monkeypatch):

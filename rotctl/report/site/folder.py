@@ -3,6 +3,7 @@
 The folder may hold other things, so that it says itself what of it a report has put there.
 """
 
+import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from fnmatch import fnmatchcase
@@ -15,6 +16,7 @@ from rotctl.report.site.pictures import SCRIPT
 # What a report puts into folders; in a list that may be a stranger's nothing else is believed.
 OURS = ("pictures/*.png", "replays/*.html", "sweeps/*.html", "sweeps/*.csv", "charts/*.svg")
 LIST = "files.txt"  # what a report has put there, one a line
+HEAD = "# what rotctl report has put here"  # its first line: a user's own list has another
 LARGEST = 4_000_000  # [bytes] of the list
 
 
@@ -28,33 +30,49 @@ def write(content: Mapping[str, bytes], out: Path) -> None:
         InputError: a file cannot be written, or something else than a report has its name.
     """
     earlier = _earlier(out)
+    # Versions without a list wrote over what had their names; what else is there they do not say.
     ours = content.keys() if earlier is None else earlier
-    taken = [out / address for address in content.keys() - ours if (out / address).exists()]
+    taken = [out / address for address in content.keys() - ours if os.path.lexists(out / address)]
+    folders = {(out / address).parent for address in content} - {out}
+    taken += [path for path in folders if os.path.lexists(path) and not _is_folder(path)]
     if taken:
-        raise InputError(f"{min(taken)}: is there, and of no earlier report; choose another --out")
-    _list({*content, *(earlier or ())}, out)  # first: after a kill it is known what is ours
+        raise _theirs(min(taken))
+    listed = {*content, *(earlier or ())}
+    _list(listed, out)  # first: after a kill it is known what is ours
     for address, data in content.items():
         path = out / address
         with files.folder(path.parent, linked=path.parent == out):
             files.replace(path, data)
-    for address in _left(out) if earlier is None else earlier:
+    for address in earlier or ():
         path = out / address
         if address not in content and _is_ours(address) and not path.parent.is_symlink():
             with suppress(OSError):
                 path.unlink()
-    _list(content, out)
+    # Another report may have been written at the same time.
+    others = (_earlier(out) or set()) - listed
+    _list({*content, *(address for address in others if os.path.lexists(out / address))}, out)
 
 
 def _earlier(out: Path) -> set[str] | None:
-    """What earlier reports have put into a folder; None where one is that does not say it."""
-    if (out / LIST).exists():
-        return set(files.text(out / LIST, LARGEST, linked=False).splitlines())
-    return None if (out / SCRIPT).exists() else set()
+    """What earlier reports have put into a folder; None where one is that does not say it.
+
+    Raises:
+        InputError: a list is there that is none of a report.
+    """
+    if not os.path.lexists(out / LIST):
+        return None if (out / SCRIPT).exists() else set()
+    head, *listed = files.text(out / LIST, LARGEST, linked=False).splitlines() or [""]
+    if head != HEAD:
+        raise _theirs(out / LIST)
+    return set(listed)
 
 
-def _left(out: Path) -> set[str]:
-    """What may be left of a report without a list, as older versions of rotctl made them."""
-    return {path.relative_to(out).as_posix() for ours in OURS for path in out.glob(ours)}
+def _theirs(path: Path) -> InputError:
+    return InputError(f"{path}: is there, and of no earlier report; choose another --out")
+
+
+def _is_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
 
 
 def _is_ours(address: str) -> bool:
@@ -63,5 +81,6 @@ def _is_ours(address: str) -> bool:
 
 
 def _list(addresses: Iterable[str], out: Path) -> None:
+    text = "".join(f"{line}\n" for line in (HEAD, *sorted(addresses)))
     with files.folder(out, linked=True):
-        files.replace(out / LIST, files.encoded("".join(f"{a}\n" for a in sorted(addresses))))
+        files.replace(out / LIST, files.encoded(text))
