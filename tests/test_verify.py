@@ -11,11 +11,12 @@ from logs import changed
 
 from rotctl.cli.main import main
 from rotctl.config.loading import load, recorded
-from rotctl.errors import LogError
+from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.runs import repetition as verifying
 from rotctl.runs.repetition import repeat
 from rotctl.runs.run import make
+from rotctl.runs.summary import judged_again
 
 ROWS = 30
 
@@ -309,3 +310,19 @@ def test_every_choice_comes_back_from_its_log(log, tmp_path):
     for overrides in (["physics=lockstep", "terrain=hazards"], ["behaviour=stairs", "seed=7"]):
         config = replace(load(overrides), duration=0.1)
         assert recorded(logged(tmp_path, *overrides, "duration=0.1")) == config
+
+
+def test_what_is_refused_of_a_new_run_is_repeated_and_judged_of_an_older_one(
+    tmp_path, monkeypatch, capsys
+):
+    """It was made when nobody asked whether its finish comes before it is over."""
+    asked = ["behaviour=forward_roll", "+finish=stand", "duration=0.1"]
+    with pytest.raises(InputError, match="it is never told to end"):
+        logged(tmp_path, *asked)
+    with monkeypatch.context() as patched:
+        patched.setattr("rotctl.runs.scenario.require_sense", lambda config: None)
+        older = logged(tmp_path, *asked)
+    assert repeat(older).same
+    assert judged_again(older, recorded(older))["behaviour"] == "forward_roll"
+    arguments = ["run", "--again", str(older.path), "--out", str(tmp_path / "out")]
+    assert (main(arguments), capsys.readouterr().err) == (0, "")

@@ -44,9 +44,7 @@ def require_fit(config: Config, model: Model) -> None:
             f"plant={config.plant.name} predicts with MuJoCo's own contacts; with "
             f"physics={config.physics.name} give plant.predicted=false"
         )
-    _require_ground(config)
     _require_in_time(behaviour, config.duration)
-    _require_end(behaviour, config.duration)
     outside = config.disturbance
     if isinstance(outside, Calm):
         return
@@ -60,6 +58,18 @@ def require_fit(config: Config, model: Model) -> None:
             f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
             "none: control goes on with the model that it knows"
         )
+
+
+def require_sense(config: Config) -> None:
+    """See that a run that is newly asked for comes to what it is told.
+
+    Older runs, made before this was refused, are repeated and judged as they are.
+
+    Raises:
+        InputError: a finish comes too late, or the ground may be drawn as none can be.
+    """
+    _require_ground(config)
+    _require_end(config.behaviour, config.duration)
 
 
 def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:

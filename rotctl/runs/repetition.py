@@ -79,7 +79,7 @@ def repeat(log: RunLog, progress: Callable[[], object] = lambda: None) -> Repeti
     log.verify()
     config = recorded(log)
     try:
-        scenario = built(config)
+        scenario = built(config, again=True)
     except InputError as error:
         raise LogError(f"{log.path}: its config makes no run here: {error}") from None
     rate = scenario.config.controller.rate
@@ -101,7 +101,7 @@ def repeat(log: RunLog, progress: Callable[[], object] = lambda: None) -> Repeti
         time=(parted or 0) / rate,
         first=first,
         whole=tuple(whole),
-        physics=_led_to(built(config), log) if asked else None,
+        physics=_led_to(built(config, again=True), log) if asked else None,
         differs=_differs(log, scenario),
     )
 

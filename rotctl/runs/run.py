@@ -58,17 +58,20 @@ def run(
     out: Path,
     force: bool = False,
     progress: Callable[[], object] = lambda: None,
+    *,
+    again: bool = False,
 ) -> Result:
     """Simulate a config into `out/<run id>/`, unless that run is there already.
 
     Args:
         force: simulate again even so.
         progress: called after every control step.
+        again: whether the config is one of a run that was made before.
 
     Raises:
         InputError: the config does not make a run, or the folder cannot be written.
     """
-    scenario = built(config)
+    scenario = built(config, again=again)
     folder = out / scenario.run_id
     replaced = ""
     if not force and os.path.lexists(folder / LOG_NAME):
@@ -131,14 +134,14 @@ def make(config: Config) -> EncodedRun:
     return _simulated(built(config))
 
 
-def built(config: Config, making: Making = ANEW) -> Scenario:
+def built(config: Config, making: Making = ANEW, *, again: bool = False) -> Scenario:
     """The parts of a run, without a word from MuJoCo; see `rotctl.runs.scenario.build`.
 
     Raises:
         InputError: the config does not make a run.
     """
     with quiet():
-        return build(config, making)
+        return build(config, making, again=again)
 
 
 def _simulated(

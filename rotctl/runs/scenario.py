@@ -12,7 +12,7 @@ from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.similarity import similar as asking
 from rotctl.caching import kept
-from rotctl.config.fit import require_fit
+from rotctl.config.fit import require_fit, require_sense
 from rotctl.config.identity import run_id
 from rotctl.config.schema import Config
 from rotctl.control import Controller, ControllerSettings
@@ -95,8 +95,11 @@ def shared() -> Making:
     return Making(keep(Controller), keep(behaviour_of), few(mujoco.MjData))
 
 
-def build(config: Config, making: Making = ANEW) -> Scenario:
+def build(config: Config, making: Making = ANEW, *, again: bool = False) -> Scenario:
     """Make all parts of a run.
+
+    Args:
+        again: whether it repeats one, of which no more is asked than when it was made.
 
     Raises:
         InputError: parts that do not fit together, with one clear line.
@@ -105,6 +108,8 @@ def build(config: Config, making: Making = ANEW) -> Scenario:
     control = similar(config.controller, by, config.behaviour.kinds)
     known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
     require_fit(config, known)
+    if not again:
+        require_sense(config)
     apart = config.plant.differs or config.disturbance.changes_model
     model = _varied(config, Variation(config.plant, plant)) if apart else known
     asked = asking(config.behaviour, by)

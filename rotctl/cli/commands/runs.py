@@ -85,7 +85,8 @@ def run(arguments: argparse.Namespace) -> int:
     what = f"{config.behaviour.name} seed {config.seed}"
     with bar(what, "step", steps, hidden=arguments.quiet) as shown:
         try:
-            result = run(config, arguments.out, arguments.force, shown.update)
+            again = arguments.again is not None
+            result = run(config, arguments.out, arguments.force, shown.update, again=again)
         except InputError as error:
             where = own_file(arguments.overrides, str(error), built)
             raise InputError(f"{where}{error}") from None
