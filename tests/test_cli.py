@@ -6,6 +6,7 @@ import resource
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
 from rotctl.cli.main import main
+from rotctl.errors import InputError
 from rotctl.log import RunLog
 
 RUN = ["run", "duration=0.5"]
@@ -312,6 +314,18 @@ def test_a_signal_that_an_import_loses_is_one_all_the_same(number, cli, monkeypa
         assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def test_what_goes_wrong_after_a_signal_is_told_as_what_it_is(cli, monkeypatch):
+    """Of a signal that was caught, as one is by who cleans up."""
+
+    def cleaned_up():
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        raise InputError("a disk is full")
+
+    monkeypatch.setattr("rotctl.cli.main.gl.chosen", cleaned_up)
+    assert cli("show")[::2] == (2, "rotctl: a disk is full\n")
 
 
 def test_a_reader_that_has_seen_enough_is_no_error():

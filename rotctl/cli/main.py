@@ -78,7 +78,7 @@ def _interruptible() -> Iterator[None]:
     """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does.
 
     Whoever calls Python from C may lose what a signal raises: of one that comes while MuJoCo is
-    imported nothing is left but an ImportError.
+    imported nothing is left but an ImportError, or a SystemError.
     """
     came = False
 
@@ -96,7 +96,7 @@ def _interruptible() -> Iterator[None]:
         return
     try:
         yield
-    except Exception:
+    except (ImportError, SystemError):
         if came:
             raise KeyboardInterrupt from None
         raise
