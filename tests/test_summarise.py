@@ -280,9 +280,11 @@ def test_runs_that_are_not_put_into_their_groups_are_told():
     (*_, note, missing) = tabulated([there, another, *lacking], []).notes
     assert missing.startswith("22 runs of the sweep are not there")
     assert note == (
-        "2 runs without a result stand apart from their groups, which are looked up for those of "
-        "20 sweeps; here are 22"
+        "2 runs without a result stand apart from their groups: groups are looked up for runs of "
+        "20 sweeps, and here are 22"
     )
+    (note, _) = tabulated([there, another, *lacking[:21]], []).notes
+    assert note.startswith("1 run without a result stands apart from its group: groups")
     assert len(tabulated([there, another, *lacking[:20]], []).notes) == 1
 
 

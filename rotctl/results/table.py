@@ -110,9 +110,12 @@ def _fill(
     left = sum(len(lacking[told]) for told in list(lacking)[MOST_SWEEPS:])
     if not left:
         return []
+    many = f"{left} runs without a result stand apart from their groups"
+    if left == 1:
+        many = "1 run without a result stands apart from its group"
     return [
-        f"{left} runs without a result stand apart from their groups, which are looked up for "
-        f"those of {MOST_SWEEPS} sweeps; here are {len(lacking)}"
+        f"{many}: groups are looked up for runs of {MOST_SWEEPS} sweeps, and here are "
+        f"{len(lacking)}"
     ]
 
 
