@@ -180,9 +180,13 @@ def test_one_that_faces_elsewhere_is_turned(tmp_path):
 
 def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "conf").mkdir()
-    (tmp_path / "conf" / "rotctl.yaml").write_text("")
-    out = "conf/character/mine.yaml"  # whose folder is made
+    usual, out = "conf/character/adult.yaml", "conf/character/mine.yaml"  # whose folder is made
+    assert main(["inspect-model", str(robot), "--out", usual]) == 2
+    assert capsys.readouterr().err == (
+        f"rotctl: {usual}: there is a character of that name that comes with rotctl; give yours "
+        "another\n"
+    )
+    assert not (tmp_path / "conf").exists()
     assert main(["inspect-model", str(robot), "--out", out]) == 0
     said = capsys.readouterr().out
     assert "  left_knee        left_shin\n" in said
@@ -196,13 +200,6 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     said = f"rotctl: --out={out}: is there already; give the character another name\n"
     assert capsys.readouterr().err.endswith(said)
     assert (tmp_path / out).read_text() == "edited by hand"
-    usual = "conf/character/adult.yaml"
-    assert main(["inspect-model", str(robot), "--out", usual]) == 2
-    assert capsys.readouterr().err == (
-        f"rotctl: {usual}: there is a character of that name that comes with rotctl; give yours "
-        "another\n"
-    )
-    assert not (tmp_path / usual).exists()
     assert main(["inspect-model", str(robot), "--map", "left_hip=no"]) == 2
     assert "--map left_hip=no: no such body; its bodies: " in capsys.readouterr().err
 

@@ -239,6 +239,15 @@ def test_import_says_what_it_made_of_the_file(captured, tmp_path, cli, monkeypat
     assert load_clip(str(tmp_path / "my roll.yaml")).name == "roll"
 
 
+def test_a_clip_in_a_conf_of_ones_own_is_found(tmp_path, cli, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
+    assert cli("author-motion", keys, "--out", "elsewhere/mine.yaml")[0] == 0
+    assert not (tmp_path / "elsewhere" / "rotctl.yaml").exists()
+    assert cli("author-motion", keys, "--out", "conf/motion/mine.yaml")[0] == 0
+    assert cli("preview-motion", "mine", "--out", tmp_path / "a.png", "--frames", 2)[0] == 0
+
+
 def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
     monkeypatch.setattr("rotctl.cli.commands.clips.CLIP_FRAMES", 2)
     out = tmp_path / "clip.yaml"

@@ -76,11 +76,25 @@ def require_own_name(kind: str, path: Path) -> None:
     Raises:
         InputError: it is; nobody could choose it, nor rotctl's.
     """
-    mine, there = own_dir(), shipped_files(kind)
-    if mine and path.stem in there and path.parent.resolve() == (mine / kind).resolve():
+    if path.stem in shipped_files(kind) and _is_found(kind, path):
         raise InputError(
             f"{path}: there is a {kind} of that name that comes with rotctl; give yours another"
         )
+
+
+def put(kind: str, path: Path, text: str) -> None:
+    """Write a file of some kind wherever the user says, if that is their folder as one of it."""
+    if _is_found(kind, path):
+        write(path, text)
+        return
+    with files.folder(path.parent, linked=True):
+        files.replace(path, files.encoded(text))
+
+
+def _is_found(kind: str, path: Path) -> bool:
+    """Whether a file is where the user's choices are looked for, once the folder is marked."""
+    mine = own_dir() or (None if is_shipped(Path("conf")) else Path("conf"))
+    return mine is not None and path.parent.resolve() == (mine / kind).resolve()
 
 
 def write(path: Path, text: str) -> Path:
@@ -89,5 +103,5 @@ def write(path: Path, text: str) -> Path:
     with files.folder(path.parent, linked=True):
         if own_dir() is None and not is_shipped(folder) and not (folder / MARK).exists():
             files.replace(folder / MARK, MARKED.encode())
-        files.replace(path, text.encode())
+        files.replace(path, files.encoded(text))
     return path

@@ -156,7 +156,7 @@ def _model(character: str) -> "Model":
 def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     """Write a clip; returns where it is."""
     from rotctl import files
-    from rotctl.choices.own_folder import require_own_name
+    from rotctl.choices.own_folder import put, require_own_name
     from rotctl.motion.writing import text
 
     out = arguments.out if arguments.out.suffix else arguments.out.with_suffix(".yaml")
@@ -164,8 +164,7 @@ def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
     require_own_name("motion", out)
     if out.exists() and out.samefile(arguments.file):
         raise InputError(f"--out={out}: is the file that is read; give the clip another name")
-    with files.folder(out.parent, linked=True):  # conf/motion, before there is any
-        files.replace(out, text(clip).encode())
+    put("motion", out, text(clip))
     return out
 
 

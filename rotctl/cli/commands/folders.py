@@ -103,7 +103,7 @@ def inspect_model(arguments: argparse.Namespace) -> int:
 
     from rotctl import files
     from rotctl.adopting import adopt
-    from rotctl.choices.own_folder import require_own_name
+    from rotctl.choices.own_folder import put, require_own_name
     from rotctl.cli.wording import adopted
 
     out = arguments.out
@@ -119,8 +119,7 @@ def inspect_model(arguments: argparse.Namespace) -> int:
     if out is not None:
         head = f"# {arguments.file.name} as rotctl inspect-model takes it.\n"
         text = yaml.safe_dump(found.character, sort_keys=False, default_flow_style=None, width=100)
-        with files.folder(out.parent, linked=True):  # conf/character, before there is any
-            files.replace(out, files.encoded(head + text))
+        put("character", out, head + text)
         print(f"character  {out}")
     return 0
 
