@@ -7,6 +7,7 @@ import pytest
 
 from rotctl.errors import InputError
 from rotctl.log import SCHEMA, TrajectoryBuffer
+from rotctl.log.buffer import whole_letters
 from rotctl.log.schema import CONSTANTS
 
 SIZES = {"steps": 7, "nq": 5, "nv": 4, "nu": 3, "capacity": 2, "tasks": 2, "bodies": 2}
@@ -75,3 +76,10 @@ def test_long_event_text_is_cut_between_characters():
     arrays = buffer.arrays()
     assert arrays["events/time"].tolist() == [1.5, 2.0]
     assert arrays["events/text"].tolist() == [("é" * 99 + "x").encode(), b"?"]
+
+
+@pytest.mark.parametrize(
+    ("text", "size", "there"), [("aé", 2, "a"), ("aé", 3, "aé"), ("é", 1, ""), ("知e", 64, "知e")]
+)
+def test_a_name_is_cut_at_a_whole_letter(text, size, there):
+    assert whole_letters(text, size) == there.encode()

@@ -156,6 +156,16 @@ def test_names_may_have_any_letters(tmp_path):
     assert "cou_à_gauche".encode() in RunLog.open(made / "run.h5")["model/joint"].tolist()
 
 
+def test_a_long_name_is_cut_at_a_whole_letter(tmp_path):
+    """A log has room for 64 bytes of each."""
+    data, long = composed(STAND), "x" + 50 * "é"
+    for body in data["character"]["bodies"]:
+        for joint in body["joints"] if body["name"] == "head" else ():
+            joint["name"] = joint["name"].replace("neck_z", long)
+    made = run(check(data), tmp_path).folder
+    assert long[:32].encode() in RunLog.open(made / "run.h5")["model/joint"].tolist()
+
+
 def test_a_shape_that_is_not_flown_has_joints_too():
     changes = {"behaviour.stages.4.flight.shapes.pike.tail": 1.0}
     said = complaint(["behaviour=dive_forward"], changes)

@@ -128,7 +128,8 @@ class TrajectoryBuffer:
         """Returns schema path -> array in schema order; the model's text is not ours."""
         times = np.array([time for time, _ in self.events], dtype=SCHEMA["events/time"].dtype)
         texts = np.array(
-            [_event_bytes(text) for _, text in self.events], dtype=SCHEMA["events/text"].dtype
+            [whole_letters(text, EVENT_BYTES) for _, text in self.events],
+            dtype=SCHEMA["events/text"].dtype,
         )
         arrays = {**self._allocated(), "events/time": times, "events/text": texts}
         return {name: arrays[name] for name in SCHEMA if name in arrays}
@@ -171,6 +172,6 @@ def _from_arrays(
     )
 
 
-def _event_bytes(text: str) -> bytes:
-    whole = text.encode("utf-8", "replace")[:EVENT_BYTES].decode("utf-8", "ignore")
-    return whole.encode("utf-8")
+def whole_letters(text: str, size: int) -> bytes:
+    """As much of the beginning of a text, in UTF-8, as has room in some bytes."""
+    return text.encode("utf-8", "replace")[:size].decode("utf-8", "ignore").encode()

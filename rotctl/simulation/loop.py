@@ -1,10 +1,14 @@
 """A whole run: an episode of a given duration, recorded."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
+
+from numpy.typing import NDArray
 
 from rotctl.errors import InputError
 from rotctl.log import TrajectoryBuffer
+from rotctl.log.buffer import whole_letters
 from rotctl.simulation.compiled_periods import compiled_periods
 from rotctl.simulation.episode import Episode, Parts
 from rotctl.simulation.record import record
@@ -61,9 +65,9 @@ def simulate(
         )
     tasks = parts.behaviour.tasks
     buffer = TrajectoryBuffer.allocate(steps, mj.nq, mj.nv, mj.nu, capacity, len(tasks), mj.nbody)
-    buffer.model.body[:] = [mj.body(i).name.encode() for i in range(mj.nbody)]
-    buffer.model.task[:] = [task.encode() for task in tasks]
-    buffer.model.joint[:] = [joint.encode() for joint in parts.model.joint_names]
+    _name(buffer.model.body, [mj.body(i).name for i in range(mj.nbody)])
+    _name(buffer.model.task, list(tasks))
+    _name(buffer.model.joint, parts.model.joint_names)
     buffer.model.torque_limit[:] = parts.model.torque_limit
     episode = Episode(parts)
     compiled = compiled_periods(parts, episode, buffer)
@@ -88,3 +92,8 @@ def simulate(
     if missed := parts.disturbance.awaited(steps / rate):
         buffer.add_event(buffer.trajectory.time[steps - 1], f"to the end it never came: {missed}")
     return Outcome(buffer.trimmed(steps), parts.stepper.complaint(episode.data))
+
+
+def _name(column: NDArray[Any], names: Iterable[str]) -> None:
+    """Write names into a log's column, as long as it has room for."""
+    column[:] = [whole_letters(name, column.dtype.itemsize) for name in names]
