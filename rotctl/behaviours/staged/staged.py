@@ -1,7 +1,7 @@
 """Behaviours as stages: what is wanted changes when the motion has come so far, not with time.
 
 A stage has poses, tasks with aims, and a condition that ends it; see `staged.aims` and
-`staged.until`. The last stage goes on. Everything is measured along the behaviour's
+`staged.conditions`. The last stage goes on. Everything is measured along the behaviour's
 forward, left and up; the phase is the excursion about left, [AlBorno2014], or about up.
 """
 
