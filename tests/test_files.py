@@ -260,8 +260,8 @@ def test_a_report_leaves_alone_what_links_lead_to(cli, folder, tmp_path, drawing
     elsewhere.mkdir()
     (elsewhere / "precious.svg").touch()
     (site / "charts").symlink_to(elsewhere)
-    said = f"rotctl: cannot write {site / 'charts'}: is a link\n"
-    assert cli("report", folder, "--out", site) == (2, said)
+    theirs = "is there, and of no earlier report; choose another --out"
+    assert cli("report", folder, "--out", site) == (2, f"rotctl: {site / 'charts'}: {theirs}\n")
     assert os.listdir(elsewhere) == ["precious.svg"]
 
 
