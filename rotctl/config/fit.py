@@ -106,13 +106,18 @@ def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None
     if not isinstance(behaviour, RollingSettings) or behaviour.pace is None or behaviour.halts:
         return
     told = behaviour.pace.easing
-    shipped = behaviour.name in shipped_files("behaviour")
-    brought = _easing(behaviour.name) if shipped else told
+    brought = _easing(behaviour.name) if _is_shipped(behaviour.name) else told
     if told not in (None, brought):
         raise InputError(
             f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
             f"which is a 0 in pace.schedule; leave it at {brief(brought)}"
         )
+
+
+@cache  # a folder is read for it, and every run of a sweep asks
+def _is_shipped(name: str) -> bool:
+    """Whether a behaviour of that name comes with rotctl."""
+    return name in shipped_files("behaviour")
 
 
 @cache
