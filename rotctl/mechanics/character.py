@@ -10,6 +10,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
+from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
 from rotctl.settings.fields import (
     SPARSE,
@@ -118,6 +119,7 @@ class Character:
         gains_for: whom the controller's gains are for, if not the drawn.
         absent: joints that others have, so that poses name them, and this one has not.
         strength: factor on all torque limits [-].
+        flesh: what is soft where it meets the ground, if anything.
     """
 
     name: str
@@ -135,6 +137,7 @@ class Character:
     gains_for: Drawn | None = None
     strength: Annotated[Positive, Field(le=1000)] = 1.0
     absent: tuple[str, ...] = ()
+    flesh: Flesh | None = field(default=None, metadata=SPARSE)
     description: str = ""
 
     def __post_init__(self) -> None:

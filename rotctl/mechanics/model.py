@@ -25,6 +25,7 @@ from rotctl.mechanics.bodies import (
     lowest_and_highest,
 )
 from rotctl.mechanics.character import Character, add_character
+from rotctl.mechanics.flesh import add_flesh
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.stature import grown
 from rotctl.mechanics.terrain import Ground, Terrain, add_tiles
@@ -166,6 +167,8 @@ def build(
     add_tiles(spec)
     try:
         add_character(spec, character)
+        if character.flesh:
+            add_flesh(spec, character.flesh, [body.name for body in character.bodies])
         for joint in spec.joints:
             joint.armature += physics.implicit_damping(joint.damping[0], spec.option.timestep)
         vary(spec)

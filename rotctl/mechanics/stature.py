@@ -66,6 +66,7 @@ def grown(character: Character) -> Character:
         joint_damping=character.joint_damping * by.torque * by.time,
         joint_armature=character.joint_armature * by.torque * by.size,
         bodies=tuple(_body(body, by, character.strength) for body in character.bodies),
+        flesh=character.flesh and replace(character.flesh, depth=character.flesh.depth * by.size),
         drawn=None,
         strength=1.0,
     )

@@ -197,6 +197,7 @@ class HazardousGround:
                 size=half,
                 density=self.box_density,
                 priority=GROUND_PRIORITY,
+                solmix=0.0,
                 friction=[self.friction, 0.0, 0.0],
                 contype=GROUND_CONTACT,
                 conaffinity=CHARACTER_CONTACT | GROUND_CONTACT,
