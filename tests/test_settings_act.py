@@ -49,6 +49,7 @@ CASES = {
         ("controller=rolling", "behaviour.alighting=null", "behaviour.catch=null", "seed=1"),
         r"(?!character\.bodies|criteria|controller\.thresholds).*",
         {
+            r"character\.flesh\.(depth|onset)": "of the back, which is not down yet",
             r"controller\.merging\.angle": "of hills, where contacts are near each other",
             r"controller\.backend": "the same mathematics, slower",
             r"controller\.sees_disturbance": "of disturbances",
@@ -57,6 +58,7 @@ CASES = {
             r"physics\.noslip_tolerance": "of noslip_iterations, which is 0",
         },
     ),
+    "flesh": Case((), r"character\.flesh\..*", seconds=2.0),
     "as written": Case((), r"controller\.thresholds\.(force|torque)", seconds=2.0),
     "hull": Case(
         ("behaviour=forward_roll_1_on_head", "controller.supervisor=convex_hull"),
