@@ -25,7 +25,8 @@ def sphere_on_the_ground(flesh):
     spec.default.geom.solref, spec.default.geom.solimp = SOLREF, (0.9, RIGID, 0.001, 0.5, 2.0)
     ball = spec.worldbody.add_body(name="ball", pos=[0, 0, 0.1])
     ball.add_joint(name="up", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
-    ball.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[0.1, 0, 0], mass=MASS, condim=3)
+    sphere = mujoco.mjtGeom.mjGEOM_SPHERE
+    ball.add_geom(type=sphere, size=[0.1, 0, 0], mass=MASS, friction=[0, 0, 0])
     if flesh:
         add_flesh(spec, flesh, ["ball"])
     add_geom(spec, "ground", 0.7, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], material="")

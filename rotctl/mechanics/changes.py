@@ -14,7 +14,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
-from rotctl.mechanics.bodies import body_id, is_character
+from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Phase, Time
 from rotctl.settings.fields import STRICT, Drawn, ends
@@ -97,10 +97,9 @@ class Slip:
         """For one run, which has `model` alone."""
         mj = model.mj
         factor = float(generator.uniform(*ends(self.friction)))
-        ground = ~is_character(mj)[mj.geom_bodyid]
 
         def change() -> None:
-            mj.geom_friction[ground] *= factor
+            mj.geom_friction *= factor
 
         onset = _onset(self.time, self.phase, generator)
         return Change(mj, onset, change, f"the ground has {factor:.3g} of its friction")

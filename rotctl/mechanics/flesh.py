@@ -13,11 +13,9 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import SIDES
-from rotctl.mechanics.terrain.ground import GROUND_PRIORITY
 from rotctl.settings.fields import STRICT, Fraction, Positive
 
 LINEAR = (0.5, 1.0)  # midpoint and power of MuJoCo's impedance: as much more as it is deeper
-OF_THE_GROUND = [0.0, 0.0, 0.0]  # friction: of two of one priority the larger counts
 
 
 @validated(frozen=True, config=STRICT)
@@ -50,6 +48,4 @@ def add_flesh(spec: mujoco.MjSpec, flesh: Flesh, known: Sequence[str]) -> None:
     soft = {name + side for name in flesh.bodies for side in ("", *SIDES)}
     for geom in spec.geoms:
         if geom.contype and geom.parent.name in soft:
-            geom.priority = GROUND_PRIORITY
-            geom.friction = OF_THE_GROUND
             geom.solimp = [flesh.onset, geom.solimp[1], flesh.depth, *LINEAR]

@@ -171,6 +171,8 @@ def build(
             add_flesh(spec, character.flesh, [body.name for body in character.bodies])
         for joint in spec.joints:
             joint.armature += physics.implicit_damping(joint.damping[0], spec.option.timestep)
+        for geom in spec.geoms:  # the ground's too, whatever a program makes of two
+            geom.friction = [terrain.friction, 0.0, 0.0]
         vary(spec)
         ground.add(spec)
         mj, mjcf = _compiled(spec)

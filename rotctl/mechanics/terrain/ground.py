@@ -15,8 +15,6 @@ Friction = Annotated[Positive, Field(le=MOST_FRICTION)]  # sliding, of ground an
 
 CHARACTER_CONTACT = 1  # contype of the character's geoms
 GROUND_CONTACT = 2  # contype of the ground's geoms
-GROUND_PRIORITY = 1  # above the character's 0: a contact has the friction of the ground alone
-# with none of its softness (solmix 0) where what touches it has flesh, whose priority is the same
 FLOOR_DEPTH = 1.0  # [m] thickness of boxes; deep enough that nothing falls through
 FASTEST = 3.0  # [m/s] ground is made as far ahead as a run comes at it; rolls average at most 2.3
 BEHIND = 6.0  # [m] of it behind the start
@@ -86,12 +84,14 @@ def add_tiles(spec: mujoco.MjSpec) -> None:
 
 
 def add_geom(spec: mujoco.MjSpec, name: str, friction: float, **shape: object) -> None:
-    """Add one solid piece of ground to the world; tiled, unless `shape` says otherwise."""
+    """Add one solid piece of ground to the world; tiled, unless `shape` says otherwise.
+
+    A contact is as soft as the character (solmix), whose friction is the ground's.
+    """
     spec.worldbody.add_geom(
         name=name,
         contype=GROUND_CONTACT,
         conaffinity=CHARACTER_CONTACT,
-        priority=GROUND_PRIORITY,
         solmix=0.0,
         friction=[friction, 0.0, 0.0],
         **({"material": "tiles"} | shape),
