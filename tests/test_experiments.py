@@ -13,6 +13,10 @@ from rotctl.errors import InputError
 from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.results.experiments import copies, experiment, matrix, names, read
+from rotctl.results.table import TAKEN
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build
+from rotctl.runs.summary import numbers, summarise
 from rotctl.sweep.claimed import require_claims
 from rotctl.sweep.plan import planned
 from rotctl.sweep.points import points
@@ -85,6 +89,11 @@ claims:
         ("lean_most", "seed: 2", [], "where: no run of its grid has seed 2; valid: 0, 1"),
         ("lean_most", "behaviour: stand, controller: stepping", [],
          "where: no run of its grid has behaviour stand, controller stepping"),
+        ("recovered", "", [], "metric: no run that it is about has a number of 'recovered'; "
+         "valid: success_rate, duration, lean_end, lean_most, other_contact, real_time_factor, "),
+        ("speed_mean", "behaviour: stand", ["behaviour=stand_step"],
+         "metric: no run that it is about has a number of 'speed_mean'; did you mean speed_end? "),
+        ("disturbed_at", "", ["disturbance=push", "disturbance.time=0"], ""),
         ("lean_most", "behaviour: stand, duration: 0.3", [], ""),
         ("lean_most", "behaviour: stand, seed: 1", ["behaviour=stand_step"], ""),
     ],
@@ -103,6 +112,33 @@ def test_a_claim_that_nobody_can_test_is_refused_before_the_sweep(
     assert error.startswith(f"rotctl: +experiment=mine: claim a: {message}" if message else "")
     assert error.count("\n") <= 1
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        ["behaviour=forward_roll_1"],
+        ["behaviour=forward_roll_2", "disturbance=push", "disturbance.time=0.1"],
+        ["behaviour=forward_roll", "+finish=stand", "behaviour.finish.after=0.3"],
+        ["behaviour=forward_roll", "behaviour.pace.schedule=[[0.0,0.9],[0.3,0.0]]"],
+        ["behaviour=stand", "disturbance=slippery", "disturbance.time=0.1"],
+        ["behaviour=back_flip"],
+        ["behaviour=dive_forward"],
+        ["behaviour=kick_up"],
+        ["behaviour=get_up"],
+        ["behaviour=pirouette_one_foot"],
+        ["behaviour=turn_over"],
+        ["behaviour=chain", "behaviour.parts=[back_flip,front_flip]"],
+    ],
+)
+def test_what_a_run_may_have_a_number_of_is_known_before_it(overrides):
+    config = load([*overrides, "duration=0.5"])
+    scenario = build(config)
+    row = summarise(scenario, in_memory(scenario)[0], "", 1.0)
+    measured = {name for name, value in row.items() if name not in TAKEN}
+    has = {name for name in measured if isinstance(row[name], int | float)}
+    assert has <= numbers(config)
+    assert numbers(config) <= measured
 
 
 def test_a_deviation_of_no_run_is_refused_as_well(tmp_path, monkeypatch, capsys):

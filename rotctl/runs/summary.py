@@ -14,6 +14,7 @@ from rotctl.metrics import disturbed
 from rotctl.metrics.columns import Arrays
 from rotctl.metrics.criteria.chain import Link
 from rotctl.metrics.criteria.judge import judge
+from rotctl.metrics.halts import COLUMNS as OF_HALTS
 from rotctl.runs.scenario import Scenario, model_of
 
 Summary = dict[str, Any]
@@ -48,6 +49,32 @@ def judged_again(log: RunLog, config: Config) -> Summary:
     wall = float(log.attributes["wall_time"])
     arrays = log.arrays()
     return _judged(config, str(log.attributes["run_id"]), model, arrays, ending, wall)
+
+
+def numbers(config: Config) -> frozenset[str]:
+    """Columns of the summary row of which such a run may have a number, whatever comes of it.
+
+    What is measured is what a log without rows is judged by; what is commanded is known.
+    """
+    behaviour, period = config.behaviour, 1.0 / config.controller.rate
+    no_rows = TrajectoryBuffer.allocate(0, 7, 6, 1, 1, 1, 1).arrays()
+    judgement = judge(
+        no_rows,
+        config.criteria,
+        behaviour.commanded,
+        period,
+        config.duration,
+        links=links_of(config),
+    )
+    found = {name for name, value in judgement.columns.items() if not isinstance(value, str)}
+    found -= {name for name, value in behaviour.commanded.items() if math.isnan(value)}
+    found |= {column.name for column in OF_HALTS if behaviour.halts}
+    outside = config.disturbance
+    if isinstance(outside, Calm) or outside.changes_model:
+        found -= {"recovery", "recovered"}
+    else:
+        found |= {column.name for column in disturbed.COLUMNS}
+    return frozenset(found | {"real_time_factor"})
 
 
 def _judged(

@@ -9,6 +9,7 @@ from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.criteria.judge import COLUMNS
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
+from rotctl.runs.summary import numbers
 from rotctl.settings.writing import to_dict
 from rotctl.suggestion import instead
 from rotctl.sweep.plan import Planned
@@ -30,7 +31,8 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
         runs: that the overrides make.
 
     Raises:
-        InputError: a metric is none, or no run of the experiment's own grid is one of `where`.
+        InputError: a metric is none, or no run of the experiment's own grid is one of `where`, or
+            none of those has the metric.
     """
     name = experiments.named(list(overrides))
     if not name:
@@ -46,21 +48,47 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
     here: list[Values] = [(run.values, run.config) for run in runs]
     told = [(f"claim {claim.id}", claim.where) for claim in read.claims]
     told += [(f"deviations.{i}", deviation.where) for i, deviation in enumerate(read.deviations)]
-    absent = [(who, where) for who, where in told if not _any(where, here)]
-    if absent and len(overrides) > 1:
+    absent = [(who, where) for who, where in told if not _picked(where, here)]
+    unmeasured = [claim for claim in read.claims if _lacks(claim.metric, claim.where, here)]
+    if (absent or unmeasured) and len(overrides) > 1:
         own = experiments.matrix([f"{experiments.PREFIX}{name}", "seed=0"])
         here = [(point.values, point.config) for point in points(own)]
-        absent = [(who, where) for who, where in absent if not _any(_without_seed(where), here)]
+        absent = [(who, where) for who, where in absent if not _picked(_without_seed(where), here)]
+        unmeasured = [
+            claim for claim in read.claims if _lacks(claim.metric, _without_seed(claim.where), here)
+        ]
     if absent:
         who, where = absent[0]
         raise InputError(
             f"{experiments.PREFIX}{name}: {who}: where: no run of its grid has "
             f"{_wrong(where, here)}"
         )
+    if unmeasured:
+        claim = unmeasured[0]
+        valid = [SUCCESS_RATE, *sorted(_measured(_picked(_without_seed(claim.where), here)))]
+        raise InputError(
+            f"{experiments.PREFIX}{name}: claim {claim.id}: metric: no run that it is about has a "
+            f"number of {claim.metric!r}; {instead(claim.metric, valid)}"
+        )
 
 
-def _any(where: Mapping[str, Any], runs: Sequence[Values]) -> bool:
-    return any(all(_value(key, run) == value for key, value in where.items()) for run in runs)
+def _picked(where: Mapping[str, Any], runs: Sequence[Values]) -> list[Values]:
+    return [run for run in runs if all(_value(key, run) == it for key, it in where.items())]
+
+
+def _lacks(metric: str, where: Mapping[str, Any], runs: Sequence[Values]) -> bool:
+    """Whether there are runs that a claim is about, and none of them has its metric."""
+    about = _picked(where, runs) if metric != SUCCESS_RATE else []
+    return bool(about) and metric not in _measured(about)
+
+
+def _measured(runs: Sequence[Values]) -> set[str]:
+    """What one of these runs at least may have a number of; runs differ little in what decides."""
+    apart = {
+        (id(config.behaviour), id(config.criteria), id(config.disturbance)): config
+        for _, config in runs
+    }
+    return {name for config in apart.values() for name in numbers(config)}
 
 
 def _without_seed(where: Mapping[str, Any]) -> dict[str, Any]:
