@@ -23,6 +23,7 @@ from rotctl.results.manifest import Entry, read, write
 from rotctl.results.stored_runs import DONE, MISSING, StoredRun, stored_runs
 from rotctl.results.table import Table, differing, table, tabulated
 from rotctl.runs.run import make, run
+from rotctl.settings.writing import to_dict
 
 ARGUMENTS = [
     "behaviour=forward_roll_1_on_head,forward_roll_1_phase",
@@ -190,6 +191,20 @@ def test_criteria_that_the_parts_of_a_chain_bring_along_are_no_column_of_their_o
     assert differing([config("a", 1), config("a", 2)]) == ["criteria.parts"]
     three = [config("a", 1), config("a", 2), config("b", 2)]
     assert differing(three) == ["behaviour.parts", "criteria.parts"]
+
+
+def test_of_stages_those_keys_are_told_that_differ():
+    swept = "behaviour.stages.0.poses.a.knee"
+    both = [
+        to_dict(load([f"behaviour={name}", f"{swept}={knee}"]))
+        for name in ("square", "stand")
+        for knee in (0.2, 0.3)
+    ]
+    assert differing(both[:2]) == [swept]
+    assert swept in differing(both)
+    assert "behaviour.stages" not in differing(both)
+    other = {**both[0], "behaviour": {**both[0]["behaviour"], "stages": []}}
+    assert differing([both[0], other]) == ["behaviour.stages"]  # of other stages all is told
 
 
 def test_runs_that_are_the_same_to_the_bit_are_told_and_count_once():

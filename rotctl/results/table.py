@@ -173,6 +173,12 @@ def _leaves_that_differ(key: str, values: list[Any]) -> list[str]:
     first = values[0]
     if all(value is first or value == first for value in values):
         return []
+    if key not in (_PARTS, _CRITERIA) and _are_of_the_same_names(values):
+        return [
+            leaf
+            for i in range(len(first))
+            for leaf in _leaves_that_differ(f"{key}.{i}", [value[i] for value in values])
+        ]
     alike: dict[str | None, list[Any]] = {}
     for value in values:
         if isinstance(value, dict):
@@ -185,6 +191,14 @@ def _leaves_that_differ(key: str, values: list[Any]) -> list[str]:
         for leaf in _leaves_that_differ(f"{key}.{part}", [value.get(part) for value in same])
     ]
     return leaves if whole else [key, *leaves]
+
+
+def _are_of_the_same_names(values: list[Any]) -> bool:
+    """Whether they are lists of keys with values, such as stages, of the same names each."""
+    if not all(isinstance(value, list | tuple) and value for value in values):
+        return False
+    named = [[name_of(one) for one in value] for value in values]
+    return None not in named[0] and all(names == named[0] for names in named)
 
 
 def _cell(value: Any) -> Any:
