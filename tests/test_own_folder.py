@@ -9,7 +9,7 @@ import yaml
 
 from rotctl import api
 from rotctl.choices import listing
-from rotctl.choices.listing import conf_dir, named_file
+from rotctl.choices.listing import choices, conf_dir, named_file, own
 from rotctl.choices.own_folder import kinds, make
 from rotctl.cli.main import main
 from rotctl.config.loading import load
@@ -130,7 +130,7 @@ def test_a_wrong_file_breaks_no_list(here, cli, text):
         *(
             (
                 ("start", word, "rest"),
-                f"{word}: YAML takes it for something else; give another name",
+                f"{word}: YAML takes {word} for something else; give another name",
             )
             for word in ("true", "null", "No", "off", "inf")
         ),
@@ -143,6 +143,42 @@ def test_what_cannot_be_begun(here, arguments, complaint):
         make(*arguments)
     assert str(error.value).startswith(complaint)
     assert not list(here.iterdir())
+
+
+@pytest.mark.parametrize("name", ["12", "1e3", "éa", "a,b", "a=b", "$q", "-x", " a", "Null"])
+def test_a_file_that_nobody_can_choose_is_told_and_is_no_choice(here, cli, name):
+    cli("new", "start", "my_start", "--from", "rest")
+    mine = here / "conf" / "start" / "my_start.yaml"
+    mine.with_name(f"{name}.yaml").write_text(mine.read_text())
+    said = cli("list", "start")[1]
+    (line,) = [line for line in said.splitlines() if line.endswith(f"{name}.yaml]")]
+    assert line.startswith(f"  {name} ")
+    assert "cannot be used: " in line
+    with own(None):
+        assert "my_start" in choices("start")
+        assert name not in choices("start")
+
+
+@pytest.mark.parametrize("name", ["2_rolls", "my-roll", "x.y", "my own"])
+def test_a_file_that_can_be_chosen_is(here, cli, name):
+    cli("new", "start", "my_start", "--from", "rest")
+    mine = here / "conf" / "start" / "my_start.yaml"
+    mine.with_name(f"{name}.yaml").write_text(mine.read_text())
+    assert cli("show", f"start={name}", "--part", "start.name") == (0, "name: my_start\n", "")
+
+
+def test_nothing_is_written_that_nobody_could_choose(here, cli):
+    cli("new", "start", "my_start", "--from", "rest")
+    out = "conf/motion/12.yaml"
+    keys = str(conf_dir() / "motion" / "keys" / "forward_roll.yaml")
+    code, _, error = cli("author-motion", keys, "--out", out)
+    assert (code, error) == (2, f"rotctl: {out}: YAML takes 12 for a number; give another name\n")
+    assert not (here / out).exists()
+
+
+def test_where_a_new_file_lies_is_told_the_same_way_each_time(here, cli):
+    for name in ("one", "two"):
+        assert cli("new", "start", name, "--from", "rest")[1] == f"conf/start/{name}.yaml\n"
 
 
 def test_every_kind_can_be_begun(here):

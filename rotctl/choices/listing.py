@@ -21,7 +21,10 @@ OWN = "ROTCTL_CONFIG_DIR"
 EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl
 MARK = "rotctl.yaml"  # in a folder of configs that is the user's
 _NO_GROUPS = {"motion", "tune", EXPERIMENTS}  # folders of conf/ that no config is composed from
+_NAMED_ALONE = {"tune", EXPERIMENTS}  # by no value of Hydra's
 MOST_VALUES = 20_000  # of a file; Hydra takes seconds for as many
+_CHOICE = re.compile(r"\w([\w. -]*[\w.-])?", re.ASCII)  # what Hydra reads as one value
+_NUMBER = re.compile(r"[\d_.]+(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 _DEFAULT = re.compile(r"(?:override )?/?(\w+)(?:@[\w.]+)?")  # a group in a list of defaults
 
 
@@ -122,9 +125,15 @@ def named_file(folder: str, name: str) -> Path:
     return found
 
 
-def is_word_of_yaml(name: str) -> bool:
-    """Whether YAML or Hydra takes a name for something else, so that nobody can choose it."""
-    return name.lower() in ("true", "false", "yes", "no", "on", "off", "null", "inf", "nan")
+def unfit(name: str) -> str:
+    """Why nobody can choose a name, as YAML or Hydra takes it for something else; mostly empty."""
+    if name.lower() in ("true", "false", "yes", "no", "on", "off", "null", "inf", "nan"):
+        return f"YAML takes {name} for something else"
+    if _NUMBER.fullmatch(name):
+        return f"YAML takes {name} for a number"
+    if not _CHOICE.fullmatch(name):
+        return "a choice is called by plain letters, digits and _ - ."
+    return ""
 
 
 def folders() -> tuple[Path, ...]:
@@ -148,7 +157,7 @@ def choices(group: str) -> list[str]:
     known = group.isidentifier() and group not in _NO_GROUPS
     if not known or not os.path.isdir(conf_dir() / group):  # of a name of any length
         return []
-    return sorted(name for name in named_files(group) if not is_word_of_yaml(name))
+    return sorted(name for name in named_files(group) if not unfit(name))
 
 
 def groups() -> dict[str, dict[str, str]]:
@@ -232,8 +241,9 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
 def _described(path: Path) -> str:
     try:
         named_file(path.parent.name, path.stem)  # of which there must be one
-        if is_word_of_yaml(path.stem):
-            raise InputError(f"YAML takes {path.stem} for something else; give it another name")
+        wrong = unfit(path.stem) if path.parent.name not in _NAMED_ALONE else ""
+        if wrong:
+            raise InputError(f"{wrong}; give it another name")
         data = content(path)
         text = files.text(path, documents.LARGEST, linked=True)
         told = data.get("description") or _first_comment(text) or data.get("file", "")  # a model

@@ -8,11 +8,11 @@ from rotctl.choices.listing import (
     MARK,
     groups,
     is_shipped,
-    is_word_of_yaml,
     named_file,
     named_files,
     own_dir,
     shipped_files,
+    unfit,
 )
 from rotctl.errors import InputError
 from rotctl.settings import documents
@@ -62,21 +62,26 @@ def free(kind: str, name: str) -> Path:
         raise InputError(f"{kind}: no such kind of file; {instead(kind, kinds())}")
     if not re.fullmatch(r"[A-Za-z]\w*", name, re.ASCII):
         raise InputError(f"{name}: must be letters, digits and _, a letter first")
-    if is_word_of_yaml(name):
-        raise InputError(f"{name}: YAML takes it for something else; give another name")
+    if wrong := unfit(name):
+        raise InputError(f"{name}: {wrong}; give another name")
     there = named_files(kind)
     if name in there:
         raise InputError(f"{name}: there is a {kind} of that name: {there[name]}")
-    return (own_dir() or Path("conf")) / kind / f"{name}.yaml"
+    mine, here = own_dir() or Path("conf"), Path.cwd()
+    return (mine.relative_to(here) if mine.is_relative_to(here) else mine) / kind / f"{name}.yaml"
 
 
 def require_own_name(kind: str, path: Path) -> None:
     """See that a file that goes into the user's folder is called as none that comes with rotctl.
 
     Raises:
-        InputError: it is; nobody could choose it, nor rotctl's.
+        InputError: it is, or as no choice can be; nobody could choose it.
     """
-    if path.stem in shipped_files(kind) and _is_found(kind, path):
+    if not _is_found(kind, path):
+        return
+    if wrong := unfit(path.stem):
+        raise InputError(f"{path}: {wrong}; give another name")
+    if path.stem in shipped_files(kind):
         raise InputError(
             f"{path}: there is a {kind} of that name that comes with rotctl; give yours another"
         )
