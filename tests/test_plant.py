@@ -45,8 +45,10 @@ def test_motors_and_ground_differ_and_control_keeps_what_it_knew():
     scenario = made("plant=randomised", "plant.friction=[0.5,0.6]")
     strength = scenario.model.torque_limit / scenario.known.torque_limit
     assert 0.9 - 1e-5 <= strength.min() < 0.97 < 1.03 < strength.max() <= 1.1 + 1e-5
-    floor = scenario.model.mj.geom_friction[:, 0].min()
-    assert 0.5 <= floor / scenario.known.mj.geom_friction[:, 0].min() <= 0.6
+    floor, known = (
+        model.mj.geom("ground").friction[0] for model in (scenario.model, scenario.known)
+    )
+    assert 0.5 <= floor / known <= 0.6
     assert scenario.known is model_of(scenario.config)
     assert scenario.controller.model is scenario.known
 
