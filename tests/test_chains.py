@@ -191,7 +191,7 @@ def test_parts_that_are_wrong(parts, message):
         (["behaviour.parts=[[a]]"], 'behaviour.parts.0=["a"]: must be keys with values'),
         (["behaviour.parts=[{a:1}]"], 'behaviour.between="square": goes between parts that are '
          "texts, and these are in full; give null"),
-        (["behaviour.parts=[stand,forward_roll]", "+behaviour.again=0.3"], "behaviour: again=0.3: "
+        (["behaviour.parts=[stand,forward_roll]", "+behaviour.again=0.3"], "behaviour.again=0.3: "
          "acts on nothing, forward_roll rolls on; 'behaviour=NAME +finish=stand' comes to an end"),
         (["behaviour.rest.feet=[]"], "behaviour.rest.feet=[]: too few values, at least 1"),
     ],
@@ -446,7 +446,7 @@ def test_so_few_revolutions_count_nothing():
     with pytest.raises(InputError) as caught:
         load(overrides)
     assert str(caught.value) == (
-        "behaviour.finish: revolutions=0.9: must be more than 0.9, or 0, which counts none"
+        "behaviour.finish.revolutions=0.9: must be more than 0.9, or 0, which counts none"
     )
 
 

@@ -590,22 +590,22 @@ def test_an_order_names_bodies_that_are_there():
     [
         (
             ["behaviour=stand_step", "+behaviour.tasks.swing.aim.aside=0.1"],
-            "behaviour.tasks.swing.aim: aside=0.1: acts on nothing, the foot is chosen by away; "
+            "behaviour.tasks.swing.aim.aside=0.1: acts on nothing, the foot is chosen by away; "
             "give aside=0 or away=0",
         ),
         (
             ["behaviour=stand_step", "+behaviour.tasks.swing.aim.narrow=0.5"],
-            "behaviour.tasks.swing.aim: narrow=0.5: acts on nothing, the foot is chosen by away; "
+            "behaviour.tasks.swing.aim.narrow=0.5: acts on nothing, the foot is chosen by away; "
             "give narrow=0 or away=0",
         ),
         (
             ["behaviour=stand_step", "behaviour.tasks.swing.aim.gather=0.1"],
-            "behaviour.tasks.swing.aim: gather=0.1: must be 0 or more than width=0.16, which it "
+            "behaviour.tasks.swing.aim.gather=0.1: must be 0 or more than width=0.16, which it "
             "comes to",
         ),
         (
             ["behaviour=cartwheel", "behaviour.stages.6.tasks.step_down.aim.room=0"],
-            "behaviour.stages.6.tasks.step_down.aim: short=0.08: acts on nothing without room; "
+            "behaviour.stages.6.tasks.step_down.aim.short=0.08: acts on nothing without room; "
             "give short=0",
         ),
     ],

@@ -124,5 +124,5 @@ def test_a_motion_of_one_turn_is_no_other(behaviour, turn, valid):
     with pytest.raises(InputError) as caught:
         load([f"behaviour={behaviour}", f"behaviour.target_excursion={turn}"])
     assert str(caught.value) == (
-        f"behaviour: target_excursion={turn}: {behaviour} is a motion of {valid} deg"
+        f"behaviour.target_excursion={turn}: {behaviour} is a motion of {valid} deg"
     )

@@ -46,7 +46,7 @@ def complaint(chosen, changes):
         (STAND, {"behaviour.tasks.balance.kind": "jump"},
          f"behaviour.tasks.balance: no kind 'jump'; valid: {', '.join(KINDS)}"),
         (STAND, {"behaviour.target_excursion": 90.0},
-         "behaviour: target_excursion=90: stand is a motion of 0 deg"),
+         "behaviour.target_excursion=90: stand is a motion of 0 deg"),
         (STAND, {"behaviour.tasks.pelvis.point": [0.1, 0.0, 0.0]},
          "behaviour.tasks.pelvis: a task of kind attitude has no point"),
         (STAND, {"behaviour.tasks.limits.point": [0.036, 0.1, 0.0]},
@@ -74,9 +74,9 @@ def complaint(chosen, changes):
          "behaviour.stages.1.beyond: the stage 'bow' must have poses and a lead, which is how far "
          "ahead they go"),
         (STAND, {"behaviour.stages.0.lead": 1.0},
-         "behaviour.stages.0: lead=1: the stage 'stand' has no poses that vary over the phase"),
+         "behaviour.stages.0.lead=1: the stage 'stand' has no poses that vary over the phase"),
         (["behaviour=back_flip"], {"behaviour.stages.3.lead": 0.5},
-         "behaviour.stages.3: lead=0.5: the stage 'launch' has no poses that vary over the phase"),
+         "behaviour.stages.3.lead=0.5: the stage 'launch' has no poses that vary over the phase"),
         (STAND, {"behaviour.stages": []}, "behaviour.stages=[]: too few values, at least 1"),
         (["behaviour=chain", 'behaviour.parts=[stand,"stand_step criteria=rolling"]'], {},
          "behaviour.parts: 'stand_step criteria=rolling': criteria=rolling does not judge "
@@ -121,7 +121,23 @@ def complaint(chosen, changes):
         ([*STAND, "disturbance=load"], {"disturbance.mass": -60.0, "disturbance.time": 0.0},
          "disturbance.mass=-60: chest has 15.1 kg"),
         ([*STAND, "disturbance=slippery"], {"disturbance.friction": [0.0, 1.0]},
-         "disturbance: friction must be a factor above 0 and at most 100"),
+         "disturbance.friction=[0.0, 1.0]: must be a factor above 0 and at most 100"),
+        ([*STAND, "disturbance=slippery"],
+         {"disturbance.friction": [0.5, 4.0], "disturbance.time": 0.0,
+          "plant.friction": [1.0, 3.0]},
+         "disturbance.friction=[0.5, 4.0]: with terrain.friction=1 and plant.friction=[1.0, 3.0] "
+         "the ground has 0.5 to 12, valid: above 0 and at most 10"),
+        (STAND, {"plant.friction": [0.0, 1.0]},
+         "plant.friction=[0.0, 1.0]: must be factors above 0 and at most 100"),
+        (STAND, {"physics.contact_solimp": [0.9, 1.0, 0.001, 0.5, 2.0]},
+         "physics.contact_solimp.1=1: MuJoCo takes the nearest of 0.0001 to 0.9999; give one of "
+         "them"),
+        (STAND, {"physics.contact_solimp": [0.9, 0.95, 0.001, 0.5, 0.5]},
+         "physics.contact_solimp.4=0.5: MuJoCo takes 1; give that or more"),
+        (STAND, {"character.trunk": ["chest", "waist", "chest"]},
+         "character.trunk: names chest twice"),
+        (STAND, {"character.exclude_from_control": ["head", "head"]},
+         "character.exclude_from_control: names head twice"),
         ([*STAND, "plant=varied"], {"terrain.friction": 10.0},
          "plant.friction=[0.9, 1.1]: with terrain.friction=10 the ground has 9 to 11, valid: above "
          "0 and at most 10"),
@@ -129,7 +145,7 @@ def complaint(chosen, changes):
          "plant.friction=[1.0, 50.0]: with terrain.friction=1 the ground has 1 to 50, valid: above "
          "0 and at most 10"),
         ([*STAND, "disturbance=load"], {"disturbance.mass": 1e9},
-         "disturbance: mass must be at most 1000 kg"),
+         "disturbance.mass=1000000000.0: must be at most 1000 kg"),
         ([*STAND, "disturbance=load"],
          {"controller.sees_disturbance": True, "disturbance.time": 0.0},
          "controller.sees_disturbance is about forces, and disturbance=load has none: control "

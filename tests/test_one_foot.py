@@ -69,7 +69,7 @@ def test_a_turn_that_it_is_not_made_for_is_refused(target):
     with pytest.raises(InputError) as caught:
         load(["behaviour=pirouette_one_foot", f"behaviour.target_excursion={target}"])
     assert str(caught.value) == (
-        f"behaviour: target_excursion={target}: pirouette_one_foot is a motion of "
+        f"behaviour.target_excursion={target}: pirouette_one_foot is a motion of "
         "-360 or -180 or 180 or 360 deg"
     )
 

@@ -208,5 +208,6 @@ def test_gains_have_their_units():
 
 
 def test_a_height_that_is_none():
-    with pytest.raises(InputError, match=r"height must be within a tenth and ten times 0\.74 m"):
+    said = r"character\.height=9: must be within a tenth and ten times 0\.74 m"
+    with pytest.raises(InputError, match=said):
         load(["character=baby", "character.height=9"])

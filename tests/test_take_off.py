@@ -71,7 +71,7 @@ def test_faster_is_faster():
             "behaviour.take_off=4: legs give no more than at 3.7 m/s; give that or less",
         ),
         ("back_flip", 0.0, "behaviour.take_off=0.0: must be greater than 0"),
-        ("stand", 3.0, "behaviour: take_off=3: no stage ends as it is launched"),
+        ("stand", 3.0, "behaviour.take_off=3: no stage ends as it is launched"),
     ],
 )
 def test_speeds_that_are_none_are_refused(behaviour, speed, said):

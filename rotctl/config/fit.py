@@ -13,10 +13,11 @@ from rotctl.choices.listing import content, shipped_files
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
+from rotctl.mechanics.changes import Slip
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.physics import LockstepPhysics
+from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.terrain.ground import MOST_FRICTION
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
@@ -25,6 +26,7 @@ from rotctl.settings.checking import brief
 from rotctl.settings.fields import Vector, ends
 
 ROUNDING = 1e-9  # [s]
+IMPEDANCES = 1e-4, 0.9999  # [-] least and most that MuJoCo has of a contact
 
 
 def require_fit(config: Config, model: Model) -> None:
@@ -66,9 +68,11 @@ def require_sense(config: Config) -> None:
     Older runs, made before this was refused, are repeated and judged as they are.
 
     Raises:
-        InputError: a finish comes too late, or the ground may be drawn as none can be.
+        InputError: a finish comes too late, the ground may be drawn as none can be, or what is
+            said of a contact acts on nothing.
     """
     _require_ground(config)
+    _require_contact(config.physics)
     _require_end(config.behaviour, config.duration)
 
 
@@ -139,14 +143,35 @@ def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
 
 
 def _require_ground(config: Config) -> None:
-    """The ground of another plant is one that there may be, whatever is drawn."""
+    """The ground of another plant is one that there may be, whatever is drawn, and stays one."""
     usual, factors = config.terrain.friction, config.plant.friction
     least, most = (usual * factor for factor in factors)
+    key, drawn, with_these = "plant.friction", brief(factors), f"terrain.friction={usual:g}"
+    if 0.0 < least <= most <= MOST_FRICTION and isinstance(config.disturbance, Slip):
+        low, high = ends(config.disturbance.friction)
+        least, most = least * low, most * high
+        key, drawn = "disturbance.friction", brief(config.disturbance.friction)
+        with_these += f" and plant.friction={brief(factors)}" if factors != (1.0, 1.0) else ""
     if not 0.0 < least <= most <= MOST_FRICTION:
         raise InputError(
-            f"plant.friction={brief(factors)}: with terrain.friction={usual:g} the ground has "
-            f"{least:g} to {most:g}, valid: above 0 and at most {MOST_FRICTION:g}"
+            f"{key}={drawn}: with {with_these} the ground has {least:g} to {most:g}, "
+            f"valid: above 0 and at most {MOST_FRICTION:g}"
         )
+
+
+def _require_contact(physics: Physics) -> None:
+    """What MuJoCo would take for another number, without a word, is refused."""
+    if isinstance(physics, LockstepPhysics):
+        return
+    onset, firm, _, middle, power = physics.contact_solimp
+    for i, value in ((0, onset), (1, firm), (3, middle)):
+        if not IMPEDANCES[0] <= value <= IMPEDANCES[1]:
+            raise InputError(
+                f"physics.contact_solimp.{i}={value:g}: MuJoCo takes the nearest of "
+                f"{IMPEDANCES[0]:g} to {IMPEDANCES[1]:g}; give one of them"
+            )
+    if power < 1.0:
+        raise InputError(f"physics.contact_solimp.4={power:g}: MuJoCo takes 1; give that or more")
 
 
 def _require_judged(

@@ -17,6 +17,7 @@ from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Phase, Time
+from rotctl.settings.checking import brief
 from rotctl.settings.fields import STRICT, Drawn, ends
 
 HEAVIEST = 1000.0  # [kg] that a body may take up
@@ -45,7 +46,7 @@ class Load:
 
     def __post_init__(self) -> None:
         if ends(self.mass)[1] > HEAVIEST:
-            raise ValueError(f"mass must be at most {HEAVIEST:g} kg")
+            raise ValueError(f"mass={brief(self.mass)}: must be at most {HEAVIEST:g} kg")
 
     def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "Change":
         """For one run, which has `model` alone.
@@ -91,7 +92,9 @@ class Slip:
     def __post_init__(self) -> None:
         low, high = ends(self.friction)
         if not 0.0 < low <= high <= 100.0:
-            raise ValueError("friction must be a factor above 0 and at most 100")
+            raise ValueError(
+                f"friction={brief(self.friction)}: must be a factor above 0 and at most 100"
+            )
 
     def make(self, model: Model, axes: Array, generator: np.random.Generator) -> "Change":
         """For one run, which has `model` alone."""

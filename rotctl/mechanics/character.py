@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import mujoco
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
@@ -21,6 +21,7 @@ from rotctl.settings.fields import (
     Positive,
     Range,
     Vector,
+    each_once,
 )
 
 Colour = tuple[Fraction, Fraction, Fraction]
@@ -129,8 +130,8 @@ class Character:
     joint_damping: NonNegative
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]
-    trunk: Annotated[tuple[str, ...], Field(min_length=1)]
-    exclude_from_control: tuple[str, ...]
+    trunk: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(each_once)]
+    exclude_from_control: Annotated[tuple[str, ...], AfterValidator(each_once)]
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     self_collision: tuple[tuple[str, str], ...] = ()
     drawn: Drawn | None = None
@@ -142,7 +143,10 @@ class Character:
 
     def __post_init__(self) -> None:
         if self.drawn and not 0.1 <= self.height / self.drawn.height <= 10.0:
-            raise ValueError(f"height must be within a tenth and ten times {self.drawn.height:g} m")
+            raise ValueError(
+                f"height={self.height:g}: must be within a tenth and ten times "
+                f"{self.drawn.height:g} m"
+            )
         for (what, most), count in zip(MOST.items(), _counts(self), strict=True):
             if count > most:
                 raise ValueError(f"has {count} {what}; at most {most} can be simulated")

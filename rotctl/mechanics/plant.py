@@ -51,7 +51,9 @@ class PlantSettings:
 
     def __post_init__(self) -> None:
         if not 0.0 < self.friction[0] <= 100.0 or self.friction[1] > 100.0:
-            raise ValueError("friction must be factors above 0 and at most 100")
+            raise ValueError(
+                f"friction={list(self.friction)}: must be factors above 0 and at most 100"
+            )
         if self.predicted and not self.delay:
             raise ValueError("predicted is about a delay, and there is none")
 

@@ -181,8 +181,11 @@ def _of_a_union(data: Any, first: Any, errors: list[Any]) -> tuple[Any, str]:
 
 
 def _begins_with_key(message: str, found: Any) -> bool:
-    """Whether a check of our own says which of the keys there it is about, `ways.0.parts: `."""
-    match = re.match(r"(\w+)(?:\.\w+)*: ", message)
+    """Whether a check of our own says which of the keys there it is about, `ways.0.parts: `.
+
+    With its value, `height=0.1: `, if it likes.
+    """
+    match = re.match(r"(\w+)(?:\.\w+)*(?:=[^:]*)?: ", message)
     return match is not None and isinstance(found, dict) and match[1] in found
 
 

@@ -41,3 +41,11 @@ Drawn = Annotated[Finite | Range, AfterValidator(_narrowed)]
 def ends(drawn: float | tuple[float, float]) -> tuple[float, float]:
     """The ends of what is drawn from a range."""
     return drawn if isinstance(drawn, tuple) else (drawn, drawn)
+
+
+def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Names none of which comes twice: the second would make another run and nothing else."""
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"names {name:.60} twice")
+    return names
