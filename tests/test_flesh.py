@@ -1,6 +1,6 @@
-"""Flesh: how deep a weight sinks by MuJoCo's law of soft contacts, and whose friction counts."""
+"""Flesh: soft at its surface, firm in its depth, on ground that keeps its friction."""
 
-from math import pi
+from itertools import islice
 
 import mujoco
 import numpy as np
@@ -8,106 +8,110 @@ import pytest
 
 from rotctl.config.loading import load
 from rotctl.errors import InputError
-from rotctl.mechanics.flesh import Flesh, add_flesh
-from rotctl.mechanics.terrain.ground import add_geom
-from rotctl.runs.scenario import model_of
+from rotctl.runs.run import in_memory
+from rotctl.runs.scenario import build, model_of
+from rotctl.simulation.episode import Episode
 
-SOLREF = (0.02, 1.0)
-RIGID, DEPTH, ONSET = 0.95, 0.03, 0.2
-MASS = 35.0  # [kg] what a seat has above it
-BODIES = "pelvis, waist, chest, head, upper_arm, forearm, thigh, shin, foot"
-
-
-def sphere_on_the_ground(flesh):
-    """A ball of 10 cm and `MASS` that can only rise and sink, touching the ground."""
-    spec = mujoco.MjSpec()
-    spec.option.timestep, spec.option.cone = 0.001, mujoco.mjtCone.mjCONE_ELLIPTIC
-    spec.default.geom.solref, spec.default.geom.solimp = SOLREF, (0.9, RIGID, 0.001, 0.5, 2.0)
-    ball = spec.worldbody.add_body(name="ball", pos=[0, 0, 0.1])
-    ball.add_joint(name="up", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
-    sphere = mujoco.mjtGeom.mjGEOM_SPHERE
-    ball.add_geom(type=sphere, size=[0.1, 0, 0], mass=MASS, friction=[0, 0, 0])
-    if flesh:
-        add_flesh(spec, flesh, ["ball"])
-    add_geom(spec, "ground", 0.7, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], material="")
-    return spec.compile()
+ONSET, DEPTH = 0.2, 0.03  # of conf/character/adult_free_head.yaml
+FIRM = 0.95  # of conf/physics/mujoco.yaml
+SOFT = {"pelvis", "waist", "chest", "thigh_l", "thigh_r"}
+IMPEDANCE = 2  # of the columns of MuJoCo's efc_KBIP
 
 
-def sunk_under(mj, force):
-    """How deep [m] it comes to rest when pressed down with `force` [N] beside its weight."""
-    data = mujoco.MjData(mj)
-    data.qfrc_applied[0] = -force
-    mujoco.mj_step(mj, data, 4000)
-    assert abs(data.qvel[0]) < 1e-6
-    return -data.qpos[0], data
+def of_the_ground(scenario, steps=90):
+    """Name of the body, contact and impedance of every contact with ground or boxes."""
+    model = scenario.model.mj
+    for moment in islice(Episode(scenario), steps):
+        data = moment.truth.data
+        for contact in data.contact:
+            first, second = (model.geom_bodyid[geom] for geom in contact.geom)
+            if contact.efc_address < 0 or (model.body_rootid[second] == 1) == (
+                model.body_rootid[first] == 1
+            ):
+                continue
+            body = second if model.body_rootid[second] == 1 else first
+            yield model.body(body).name, contact, data.efc_KBIP[contact.efc_address, IMPEDANCE]
 
 
-@pytest.mark.parametrize("force", [0.0, 300.0, 900.0, 3000.0])
-def test_the_force_grows_with_the_depth(force):
-    """At rest (1 - d) F = m d k r, d and k the impedance and stiffness at depth r."""
-    depth, data = sunk_under(sphere_on_the_ground(Flesh(("ball",), DEPTH, ONSET)), force)
-    impedance = ONSET + (RIGID - ONSET) * min(depth / DEPTH, 1.0)
-    stiffness = impedance / (RIGID * SOLREF[0] * SOLREF[1]) ** 2
-    held = MASS * stiffness * depth * impedance / (1.0 - impedance)
-    assert held == pytest.approx(MASS * 9.81 + force, rel=1e-3)
-    assert data.contact.friction[0, :2] == pytest.approx(0.7)  # the ground's alone
-    bare, _ = sunk_under(sphere_on_the_ground(None), force)
-    assert bare < 0.3 * depth
+@pytest.mark.parametrize(
+    ("overrides", "friction", "size"),
+    [
+        ((), {1.0}, 1.0),
+        (("terrain.friction=0.3", "character.height=1.2"), {0.3}, 1.2 / 1.75),
+        (("physics=mat",), {1.0}, 1.0),
+        (("behaviour=hazards", "terrain.run_in=0.5", "terrain.friction=0.6"), {0.6}, 1.0),
+        (("disturbance=slippery", "disturbance.time=0.7"), {1.0, 0.5}, 1.0),
+    ],
+)
+def test_a_contact_is_as_firm_as_flesh_is_pressed_together_and_as_rough_as_the_ground(
+    overrides, friction, size
+):
+    scenario = build(load([*overrides, "duration=2"]))
+    met, rough = set(), set()
+    for name, contact, impedance in of_the_ground(scenario):
+        rough.add(round(float(contact.friction[0]), 9))
+        share = min(-contact.dist / (DEPTH * size), 1.0)
+        if name in SOFT:
+            met.add(name)
+            assert impedance == pytest.approx(ONSET + (FIRM - ONSET) * share, abs=1e-5)
+        else:
+            assert impedance >= 0.9
+        assert contact.solref[0] == scenario.config.physics.contact_solref[0]
+    assert met
+    assert rough == friction
 
 
-def test_a_seat_is_no_softer_than_a_measured_one():
-    """Young adults' hips have 25 to 36 kN/m at some 900 N (Choi et al., J. Biomech. 162, 2023)."""
-    depth, _ = sunk_under(sphere_on_the_ground(Flesh(("ball",), DEPTH, ONSET)), 900.0 - 9.81 * MASS)
-    assert 36e3 < 900.0 / depth < 100e3
+def test_bodies_that_touch_each_other_are_as_firm_as_without():
+    fleshed, bare = (load(["duration=1", *more]) for more in ((), ("character.flesh=null",)))
+    one, other = (model_of(config).mj for config in (fleshed, bare))
+    assert one.npair > 0
+    for name in ("pair_solimp", "pair_solref", "pair_friction"):
+        assert np.array_equal(getattr(one, name), getattr(other, name))
 
 
-def hardest(mj, speed):
-    """The largest force [N] of a ball that comes down at `speed` [m/s]."""
-    data = mujoco.MjData(mj)
-    data.qvel[0] = -speed
-    forces = []
-    for _ in range(200):
-        mujoco.mj_step(mj, data)
-        forces.append(data.qfrc_constraint[0])
-    return max(forces)
+def test_an_exported_model_has_it():
+    ours = model_of(load(["duration=1"]))
+    theirs = mujoco.MjModel.from_xml_string(ours.mjcf)
+    for geom in range(ours.mj.ngeom):
+        one, other = ours.mj.geom(geom), theirs.geom(ours.mj.geom(geom).name)
+        for what in ("solimp", "friction", "solmix"):
+            assert np.array_equal(getattr(one, what), getattr(other, what))
 
 
-def test_a_blow_is_not_hardest_at_the_first_touch():
-    soft, bare = (sphere_on_the_ground(it) for it in (Flesh(("ball",), DEPTH, ONSET), None))
-    assert hardest(soft, 1.0) < 0.6 * hardest(bare, 1.0)
-
-
-def test_rolls_have_it_and_their_ground_the_friction():
-    """Each contact of a body that lies: flesh under the trunk, none under an arm."""
-    config = load(["behaviour=forward_roll_1", "terrain.friction=0.6"])
-    model, flesh = model_of(config), config.character.flesh
-    data = mujoco.MjData(model.mj)
-    data.qpos[2] = 0.03
-    data.qpos[3:7] = [np.cos(-pi / 4), 0.0, np.sin(-pi / 4), 0.0]  # on its back
-    mujoco.mj_forward(model.mj, data)
-    touched = {}
-    for contact in data.contact:
-        ground, geom = sorted(contact.geom, key=lambda g: model.mj.geom_bodyid[g])
-        if model.mj.geom_bodyid[ground] == 0:
-            touched[model.mj.body(model.mj.geom_bodyid[geom]).name] = contact
-    assert {"pelvis", "chest", "forearm_l"} <= set(touched)
-    for name, contact in touched.items():
-        soft = name.removesuffix("_l").removesuffix("_r") in flesh.bodies
-        assert contact.solimp[0] == pytest.approx(flesh.onset if soft else 0.9), name
-        assert contact.solimp[2] == pytest.approx(flesh.depth if soft else 0.001), name
-        assert contact.friction[:2] == pytest.approx(0.6), name
-
-
-def test_it_grows_with_the_body():
-    child = load(["behaviour=forward_roll_1", "character.height=1.2", "character.mass=23"])
-    model = model_of(child)
-    depth = child.character.flesh.depth * 1.2 / 1.75
-    assert model.mj.geom("pelvis").solimp[2] == pytest.approx(depth, rel=1e-5)
-
-
-def test_unknown_bodies_are_named():
-    with pytest.raises(InputError) as error:
-        model_of(load(["behaviour=forward_roll_1", "character.flesh.bodies=[pelvis,tail]"]))
-    assert str(error.value) == (
-        f"character.flesh.bodies names the unknown body 'tail'; bodies: {BODIES}"
+def test_in_lockstep_contacts_are_hard():
+    one, other = (
+        in_memory(build(load(["physics=lockstep", "duration=1", *more])))[0].trajectory.qpos
+        for more in ((), ("character.flesh=null",))
     )
+    assert np.array_equal(one, other)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "message"),
+    [
+        (("character.flesh.bodies=[thig]",),
+         "character.flesh.bodies names the unknown body 'thig'; did you mean thigh? valid: "),
+        (("character.flesh.bodies=[chest,waist,chest]",),
+         "character.flesh.bodies: names chest twice"),
+        (("character.flesh.depth=0.08",),
+         "character.flesh.depth is 0.08 m, and thigh_l is 0.072 m thick from its surface to its "
+         "middle; valid: at most that"),
+        (("character.flesh.depth=0.06", "character.height=1.2"), ""),  # of the drawn
+        (("character.flesh.depth=0",), "character.flesh.depth=0: must be greater than 0"),
+        (("character.flesh.onset=0",),
+         "character.flesh.onset=0: must be greater than or equal to 0.0001"),
+        (("character.flesh.onset=0.95",),
+         "character.flesh.onset=0.95: must be less than 0.95, which the contact comes to"),
+        (("physics=lockstep", "character.flesh.depth=0.04"),
+         "character.flesh.depth=0.04: acts on nothing, as contacts of physics=lockstep are hard; "
+         "leave flesh as character=adult_free_head has it"),
+        (("physics=lockstep",), ""),
+    ],
+)  # fmt: skip
+def test_flesh_that_is_none_is_refused(overrides, message):
+    said = ""
+    try:
+        build(load([*overrides, "duration=1"]))
+    except InputError as error:
+        said = str(error)
+    assert said.startswith(message) if message else not said

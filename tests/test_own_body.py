@@ -162,6 +162,16 @@ def test_an_unknown_key_is_told():
     )
 
 
+def test_it_may_have_flesh_as_any_character(here):
+    flesh = "{bodies: [pelvis], depth: 0.02, onset: 0.3}"
+    inside = INLINE.replace("{", f"{{flesh: {flesh}, ", 1)
+    for overrides in ([inside], [INLINE, f"+character.flesh={flesh}"]):
+        found = load(overrides).character.flesh
+        assert (found.bodies, found.depth, found.onset) == (("pelvis",), 0.02, 0.3)
+    assert load([inside, "character.flesh.onset=0.4"]).character.flesh.onset == 0.4
+    assert load([INLINE]).character.flesh is None
+
+
 def test_a_key_that_only_begins_so_is_none_of_the_models():
     for key in ("character_x", "characters.mass"):
         said = complaint(INLINE, f"{key}=1")

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cache
+from typing import Any
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain.settings import ChainSettings
@@ -14,16 +15,19 @@ from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.changes import Slip
+from rotctl.mechanics.character import Character
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
+from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, Physics
 from rotctl.mechanics.terrain.ground import MOST_FRICTION
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
-from rotctl.settings.checking import brief
+from rotctl.settings.checking import brief, checked
 from rotctl.settings.fields import Vector, ends
+from rotctl.settings.writing import to_dict
 
 ROUNDING = 1e-9  # [s]
 IMPEDANCES = 1e-4, 0.9999  # [-] least and most that MuJoCo has of a contact
@@ -73,6 +77,8 @@ def require_sense(config: Config) -> None:
     """
     _require_ground(config)
     _require_contact(config.physics)
+    if isinstance(config.physics, LockstepPhysics):
+        _require_hard(config.character, config.physics)
     _require_end(config.behaviour, config.duration)
 
 
@@ -172,6 +178,29 @@ def _require_contact(physics: Physics) -> None:
             )
     if power < 1.0:
         raise InputError(f"physics.contact_solimp.4={power:g}: MuJoCo takes 1; give that or more")
+
+
+def _require_hard(character: Character, physics: LockstepPhysics) -> None:
+    """Contacts in lockstep are hard: flesh is not told there, but as a character brings it."""
+    told = character.flesh and to_dict(character.flesh)
+    shipped = character.name in shipped_files("character")
+    if not told or not shipped:
+        return
+    brought = _flesh(character.name) or {}
+    for key, value in told.items():
+        if value != brought.get(key):
+            raise InputError(
+                f"character.flesh.{key}={brief(value)}: acts on nothing, as contacts of "
+                f"physics={physics.name} are hard; leave flesh as character={character.name} has it"
+            )
+
+
+@cache
+def _flesh(name: str) -> dict[str, Any] | None:
+    """Of a character that comes with rotctl."""
+    made = composing.composed([composing.Assignment("character", name)])
+    flesh = made["character"].get("flesh") if made else None
+    return flesh and to_dict(checked(Flesh, flesh))
 
 
 def _require_judged(

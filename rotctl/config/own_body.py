@@ -16,6 +16,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.choices.composing import simple
 from rotctl.choices.listing import choices, content, is_own, named_file, shipped_files
 from rotctl.errors import InputError
+from rotctl.mechanics.character import Character
 from rotctl.settings import plain
 from rotctl.settings.checking import checked, unknown_key
 from rotctl.settings.fields import STRICT
@@ -113,9 +114,11 @@ def converted(model: Named) -> dict[str, Any]:
     roles, fitted = tuple(body.roles.items()), body.meshes == "fitted"
     hulls = body.collision == "hulls"
     data = _adopted(path, _stamp(path), roles, fitted, hulls, body.proxies)
+    ours_alone = [key for key in Character.__dataclass_fields__ if key not in data]
     for parts, value in over:
-        if plain.find(data, parts) is plain.NOTHING:
-            valid = [*OwnBody.__dataclass_fields__, *data]
+        added = len(parts) == 1 and parts[0] in ours_alone
+        if plain.find(data, parts) is plain.NOTHING and not added:
+            valid = [*OwnBody.__dataclass_fields__, *data, *ours_alone]
             raise InputError(unknown_key(plain.dotted((GROUP, *parts)), GROUP, valid))
         data = plain.put(data, parts, value)
     if data["name"] in list(shipped_files(GROUP)):
