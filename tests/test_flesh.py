@@ -90,12 +90,14 @@ def test_in_lockstep_contacts_are_hard():
     ("overrides", "message"),
     [
         (("character.flesh.bodies=[thig]",),
-         "character.flesh.bodies names the unknown body 'thig'; did you mean thigh? valid: "),
+         "character.flesh.bodies: no body 'thig'; did you mean thigh? valid: pelvis, waist, "),
         (("character.flesh.bodies=[chest,waist,chest]",),
          "character.flesh.bodies: names chest twice"),
         (("character.flesh.depth=0.08",),
-         "character.flesh.depth is 0.08 m, and thigh_l is 0.072 m thick from its surface to its "
-         "middle; valid: at most that"),
+         "character.flesh.depth=0.08: must be at most 0.072, which thigh has from its surface to "
+         "its middle"),
+        (("character.flesh.depth=0.08", "character.height=1.2"),  # told as it is written
+         "character.flesh.depth=0.08: must be at most 0.072, "),
         (("character.flesh.depth=0.06", "character.height=1.2"), ""),  # of the drawn
         (("character.flesh.depth=0",), "character.flesh.depth=0: must be greater than 0"),
         (("character.flesh.onset=0",),

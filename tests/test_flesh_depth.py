@@ -21,7 +21,7 @@ def sphere_on_the_ground(flesh):
     sphere = mujoco.mjtGeom.mjGEOM_SPHERE
     ball.add_geom(type=sphere, size=[0.1, 0, 0], mass=MASS, friction=[0, 0, 0])
     if flesh:
-        add_flesh(spec, flesh, ["ball"])
+        add_flesh(spec, flesh)
     add_geom(spec, "ground", 0.7, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], material="")
     return spec.compile()
 

@@ -100,6 +100,11 @@ class Body:
     mirror: bool = False
     colour: Colour = (0.8, 0.6, 0.5)
 
+    @property
+    def thickness(self) -> float:
+        """From the surface of what touches to its middle, where that is most [m]."""
+        return max((geom.size for geom in self.geoms if geom.mass > 0), default=0.0)
+
 
 @validated(frozen=True, config=STRICT)
 class Drawn:
@@ -147,6 +152,8 @@ class Character:
                 f"height={self.height:g}: must be within a tenth and ten times "
                 f"{self.drawn.height:g} m"
             )
+        if self.flesh:
+            self.flesh.require_room({body.name: body.thickness for body in self.bodies})
         for (what, most), count in zip(MOST.items(), _counts(self), strict=True):
             if count > most:
                 raise ValueError(f"has {count} {what}; at most {most} can be simulated")

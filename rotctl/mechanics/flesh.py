@@ -4,7 +4,7 @@ A damper that is whole from the first touch makes the hardest blow there. Of fle
 with the depth too, as Hunt and Crossley have it (J. Appl. Mech. 42, 1975).
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Annotated
 
 import mujoco
@@ -35,32 +35,30 @@ class Flesh:
     depth: Annotated[Positive, Field(le=10)]
     onset: Annotated[Fraction, Field(ge=LEAST)]
 
+    def require_room(self, thick: Mapping[str, float]) -> None:
+        """See that bodies are as thick [m], from their surfaces to their middles, as their flesh.
 
-def add_flesh(spec: mujoco.MjSpec, flesh: Flesh, known: Sequence[str]) -> None:
-    """Give bodies of the character in `spec`, all of whose are `known`, their flesh.
+        Raises:
+            ValueError: one is not, or there is none of a name.
+        """
+        for name in self.bodies:
+            if name not in thick:
+                raise ValueError(f"flesh.bodies: no body {name!r}; {instead(name, thick)}")
+            if self.depth > thick[name]:
+                raise ValueError(
+                    f"flesh.depth={self.depth:g}: must be at most {thick[name]:g}, which {name} "
+                    "has from its surface to its middle"
+                )
+
+
+def add_flesh(spec: mujoco.MjSpec, flesh: Flesh) -> None:
+    """Give the character in `spec` its flesh.
 
     Raises:
-        InputError: there is no body of a name, it is less thick than its flesh, or the flesh is
-            firmer at its surface than in its depth.
+        InputError: it is firmer at its surface than in its depth.
     """
-    for name in flesh.bodies:
-        if name not in known:
-            raise InputError(
-                f"character.flesh.bodies names the unknown body {name!r}; {instead(name, known)}"
-            )
-        both = {name + side for side in ("", *SIDES)}
-        _soften([geom for geom in spec.geoms if geom.contype and geom.parent.name in both], flesh)
-
-
-def _soften(geoms: Sequence[mujoco.MjsGeom], flesh: Flesh) -> None:
-    """Of one body."""
-    name, thick = geoms[0].parent.name, max(float(geom.size[0]) for geom in geoms)
-    if flesh.depth > thick:
-        raise InputError(
-            f"character.flesh.depth is {flesh.depth:g} m, and {name} is {thick:.3g} m thick from "
-            "its surface to its middle; valid: at most that"
-        )
-    for geom in geoms:
+    soft = {name + side for name in flesh.bodies for side in ("", *SIDES)}
+    for geom in [geom for geom in spec.geoms if geom.contype and geom.parent.name in soft]:
         firm = float(geom.solimp[1])
         if flesh.onset >= firm:
             raise InputError(

@@ -168,7 +168,7 @@ def build(
     try:
         add_character(spec, character)
         if character.flesh:
-            add_flesh(spec, character.flesh, [body.name for body in character.bodies])
+            add_flesh(spec, character.flesh)
         for joint in spec.joints:
             joint.armature += physics.implicit_damping(joint.damping[0], spec.option.timestep)
         for geom in spec.geoms:  # the ground's too, whatever a program makes of two
