@@ -134,6 +134,12 @@ def complaint(chosen, changes):
          "them"),
         (STAND, {"physics.contact_solimp": [0.9, 0.95, 0.001, 0.5, 0.5]},
          "physics.contact_solimp.4=0.5: MuJoCo takes 1; give that or more"),
+        (STAND, {"physics.contact_solref": [0.001, 1.0]},
+         "physics.contact_solref.0=0.001: MuJoCo takes two physics steps, 0.008333 s; give that "
+         "or more"),
+        (STAND, {"character.limit_solref": [0.001, 1.0]},
+         "character.limit_solref.0=0.001: MuJoCo takes two physics steps, 0.008333 s; give that "
+         "or more"),
         (STAND, {"character.trunk": ["chest", "waist", "chest"]},
          "character.trunk: names chest twice"),
         (STAND, {"character.exclude_from_control": ["head", "head"]},
@@ -223,3 +229,8 @@ def test_nor_does_one_of_keys():
 def test_no_error_is_longer_than_a_screen(kind):
     assert str(kind("a" * 10**6)) == "a" * (LONGEST - 3) + "..."
     assert str(kind("a" * LONGEST)) == "a" * LONGEST
+
+
+def test_a_stop_that_a_choice_brings_along_may_be_shorter_than_steps_that_are_told():
+    scenario = build(check(composed(["physics.substeps=1", "duration=0.5"])))
+    assert scenario.config.physics.contact_solref[0] < 2.0 * scenario.model.mj.opt.timestep

@@ -20,7 +20,7 @@ from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.physics import LockstepPhysics, Physics
+from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
 from rotctl.mechanics.terrain.ground import MOST_FRICTION
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
@@ -76,8 +76,10 @@ def require_sense(config: Config) -> None:
             said of a contact acts on nothing.
     """
     _require_ground(config)
-    _require_contact(config.physics)
-    if isinstance(config.physics, LockstepPhysics):
+    if not isinstance(config.physics, LockstepPhysics):
+        _require_contact(config.physics)
+        _require_slow(config.character, config.physics, config.controller.rate)
+    else:
         _require_hard(config.character, config.physics)
     _require_end(config.behaviour, config.duration)
 
@@ -165,10 +167,8 @@ def _require_ground(config: Config) -> None:
         )
 
 
-def _require_contact(physics: Physics) -> None:
+def _require_contact(physics: MujocoPhysics) -> None:
     """What MuJoCo would take for another number, without a word, is refused."""
-    if isinstance(physics, LockstepPhysics):
-        return
     onset, firm, _, middle, power = physics.contact_solimp
     for i, value in ((0, onset), (1, firm), (3, middle)):
         if not IMPEDANCES[0] <= value <= IMPEDANCES[1]:
@@ -180,13 +180,29 @@ def _require_contact(physics: Physics) -> None:
         raise InputError(f"physics.contact_solimp.4={power:g}: MuJoCo takes 1; give that or more")
 
 
+def _require_slow(character: Character, physics: MujocoPhysics, rate: float) -> None:
+    """MuJoCo stops nothing in less than two steps; what a choice brings along is not told."""
+    least = 2.0 / (rate * physics.substeps)
+    for group, name, key, (told, _) in (
+        ("character", character.name, "limit_solref", character.limit_solref),
+        ("physics", physics.name, "contact_solref", physics.contact_solref),
+    ):
+        brought = _brought(group, name).get(key, (told,))[0]
+        if told < 0.999 * least and told != brought:
+            raise InputError(
+                f"{group}.{key}.0={told:g}: MuJoCo takes two physics steps, {least:.4g} s; give "
+                "that or more"
+            )
+
+
 def _require_hard(character: Character, physics: LockstepPhysics) -> None:
     """Contacts in lockstep are hard: flesh is not told there, but as a character brings it."""
     told = character.flesh and to_dict(character.flesh)
-    shipped = character.name in shipped_files("character")
-    if not told or not shipped:
+    whole = _brought("character", character.name)
+    if not told or not whole:
         return
-    brought = _flesh(character.name) or {}
+    flesh = whole.get("flesh")
+    brought = to_dict(checked(Flesh, flesh)) if flesh else {}
     for key, value in told.items():
         if value != brought.get(key):
             raise InputError(
@@ -196,11 +212,12 @@ def _require_hard(character: Character, physics: LockstepPhysics) -> None:
 
 
 @cache
-def _flesh(name: str) -> dict[str, Any] | None:
-    """Of a character that comes with rotctl."""
-    made = composing.composed([composing.Assignment("character", name)])
-    flesh = made["character"].get("flesh") if made else None
-    return flesh and to_dict(checked(Flesh, flesh))
+def _brought(group: str, name: str) -> dict[str, Any]:
+    """What is in a choice that comes with rotctl; nothing of another one."""
+    if name not in shipped_files(group):
+        return {}
+    made = composing.composed([composing.Assignment(group, name)])
+    return dict(made[group]) if made else {}
 
 
 def _require_judged(
