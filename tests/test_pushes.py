@@ -170,7 +170,7 @@ def test_without_a_push_that_ends_nothing_is_overcome(disturbance):
 
 def test_what_the_end_cuts_short_is_not_called_unrecovered():
     """Thrown over at 2 s: 3.5 s on, all that one looks at, it is known, and not before."""
-    thrown = ("disturbance.time=2", "disturbance.impulse=600", "disturbance.direction=270")
+    thrown = ("disturbance.time=2", "disturbance.impulse=900", "disturbance.direction=90")
     buffer, columns = measured(*thrown, "duration=7")
     assert columns["recovered"] == 0.0
     scenario = build(load([*PUSH, *thrown]))
