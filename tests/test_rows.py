@@ -80,7 +80,7 @@ def test_who_rolls_backward_pushes_himself_up_over_the_hands(row):
 
 
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
-def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(physics):
+def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_loins(physics):
     buffer, _, _ = rolled("behaviour=forward_roll_3", f"physics={physics}", "seed=2000")
     model = build(load(["behaviour=forward_roll_3"])).model.mj
     up = buffer.contacts.force_realised[..., 2].astype(float)
@@ -94,23 +94,12 @@ def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(p
         aside = ((buffer.contacts.position - middle[:, None]) * left).sum(axis=2)
         return float((on(name) * (aside > 0.0)).sum() / on(name).sum())
 
-    assert to_the_left("chest") < 0.5  # of eight starts at most 0.4
-    assert to_the_left("waist") > 0.5  # of eight starts at least 0.57
-    assert to_the_left("pelvis") > 0.5  # at least 0.64
+    assert to_the_left("chest") < 0.5  # of five starts at most 0.4
+    assert to_the_left("waist") > 0.7  # at least 0.8; the pelvis comes down nearly square
     assert on("head").sum() / up.sum() < 0.03
     assert on("forearm_r").sum() / up.sum() > 0.03
-
-
-@pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
-def test_hand_forearm_shoulder_and_hip_bear_one_after_the_other(physics):
-    """In 0.9 of its revolutions; in half of them before the elbow came down."""
-    model = build(load(["behaviour=forward_roll_3"])).model.mj
-
-    def across(seed):
-        buffer, _, _ = rolled("behaviour=forward_roll_3", f"physics={physics}", f"seed={seed}")
-        return appearance.measure(buffer.arrays(), model, 1.5, 1.0 / 60.0).across
-
-    assert np.mean([across(seed) for seed in range(2000, 2006)]) > 0.6
+    seen = appearance.measure(buffer.arrays(), model, 1.5, 1.0 / 60.0)
+    assert seen.across > 0.5  # mostly 1 in so short a run; before its elbow came down 0.5
 
 
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
