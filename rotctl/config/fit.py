@@ -1,36 +1,28 @@
 """Parts of a config that are each valid, and whether they make a run together."""
 
 from collections.abc import Sequence
-from functools import cache
-from typing import Any
 
 from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.placing import Watch
 from rotctl.behaviours.staged.settings import StagedSettings
-from rotctl.choices import composing
+from rotctl.choices.brought import brought
 from rotctl.choices.listing import content, shipped_files
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
-from rotctl.mechanics.changes import Slip
-from rotctl.mechanics.character import Character
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.excursion import ExcursionSettings
-from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
-from rotctl.mechanics.terrain.ground import MOST_FRICTION
+from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
-from rotctl.settings.checking import brief, checked
+from rotctl.settings.checking import brief
 from rotctl.settings.fields import Vector, ends
-from rotctl.settings.writing import to_dict
 
 ROUNDING = 1e-9  # [s]
-IMPEDANCES = 1e-4, 0.9999  # [-] least and most that MuJoCo has of a contact
 
 
 def require_fit(config: Config, model: Model) -> None:
@@ -66,24 +58,6 @@ def require_fit(config: Config, model: Model) -> None:
         )
 
 
-def require_sense(config: Config) -> None:
-    """See that a run that is newly asked for comes to what it is told.
-
-    Older runs, made before this was refused, are repeated and judged as they are.
-
-    Raises:
-        InputError: a finish comes too late, the ground may be drawn as none can be, or what is
-            said of a contact acts on nothing.
-    """
-    _require_ground(config)
-    if not isinstance(config.physics, LockstepPhysics):
-        _require_contact(config.physics)
-        _require_slow(config.character, config.physics, config.controller.rate)
-    else:
-        _require_hard(config.character, config.physics)
-    _require_end(config.behaviour, config.duration)
-
-
 def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:
     """A pull that is told acts on something; what every measure has of it is not told."""
     lacking: dict[str, str] = {}
@@ -94,17 +68,11 @@ def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -
     if measured.measure == "clock":
         lacking["phase_time"] = "with measure=clock the phase goes by time"
     for key, why in lacking.items():
-        told, usual = getattr(measured, key), _usual(key)
+        told, usual = getattr(measured, key), brought("excursion", "oriented")[key]
         if told != usual:
             raise InputError(
                 f"excursion.{key}={told:g}: acts on nothing, as {why}; leave it at {usual:g}"
             )
-
-
-@cache
-def _usual(key: str) -> float:
-    """A pull's time that comes with rotctl [s]."""
-    return float(content(shipped_files("excursion")["oriented"])[key])
 
 
 def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None:
@@ -117,27 +85,13 @@ def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None
             _require_halts(part.behaviour, f"{part.place(number)}: behaviour")
     if not isinstance(behaviour, RollingSettings) or behaviour.pace is None or behaviour.halts:
         return
-    told = behaviour.pace.easing
-    brought = _easing(behaviour.name) if _is_shipped(behaviour.name) else told
-    if told not in (None, brought):
+    told, whole = behaviour.pace.easing, brought("behaviour", behaviour.name)
+    usual = (whole.get("pace") or {}).get("easing") if whole else told
+    if told not in (None, usual):
         raise InputError(
             f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
-            f"which is a 0 in pace.schedule; leave it at {brief(brought)}"
+            f"which is a 0 in pace.schedule; leave it at {brief(usual)}"
         )
-
-
-@cache  # a folder is read for it, and every run of a sweep asks
-def _is_shipped(name: str) -> bool:
-    """Whether a behaviour of that name comes with rotctl."""
-    return name in shipped_files("behaviour")
-
-
-@cache
-def _easing(name: str) -> float | None:
-    """Of the pace of a behaviour that comes with rotctl [m/s]."""
-    made = composing.composed([composing.Assignment("behaviour", name)])
-    pace = made["behaviour"].get("pace") if made else None
-    return pace.get("easing") if pace else None
 
 
 def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
@@ -148,76 +102,6 @@ def _require_weight(behaviour: BehaviourSettings, gravity: Vector) -> None:
             f"physics.gravity.2={gravity[2]:g}: must be less than 0, as behaviour={behaviour.name} "
             "stands or falls by its weight; a roll without a finish turns without it"
         )
-
-
-def _require_ground(config: Config) -> None:
-    """The ground of another plant is one that there may be, whatever is drawn, and stays one."""
-    usual, factors = config.terrain.friction, config.plant.friction
-    least, most = (usual * factor for factor in factors)
-    key, drawn, with_these = "plant.friction", brief(factors), f"terrain.friction={usual:g}"
-    if 0.0 < least <= most <= MOST_FRICTION and isinstance(config.disturbance, Slip):
-        low, high = ends(config.disturbance.friction)
-        least, most = least * low, most * high
-        key, drawn = "disturbance.friction", brief(config.disturbance.friction)
-        with_these += f" and plant.friction={brief(factors)}" if factors != (1.0, 1.0) else ""
-    if not 0.0 < least <= most <= MOST_FRICTION:
-        raise InputError(
-            f"{key}={drawn}: with {with_these} the ground has {least:g} to {most:g}, "
-            f"valid: above 0 and at most {MOST_FRICTION:g}"
-        )
-
-
-def _require_contact(physics: MujocoPhysics) -> None:
-    """What MuJoCo would take for another number, without a word, is refused."""
-    onset, firm, _, middle, power = physics.contact_solimp
-    for i, value in ((0, onset), (1, firm), (3, middle)):
-        if not IMPEDANCES[0] <= value <= IMPEDANCES[1]:
-            raise InputError(
-                f"physics.contact_solimp.{i}={value:g}: MuJoCo takes the nearest of "
-                f"{IMPEDANCES[0]:g} to {IMPEDANCES[1]:g}; give one of them"
-            )
-    if power < 1.0:
-        raise InputError(f"physics.contact_solimp.4={power:g}: MuJoCo takes 1; give that or more")
-
-
-def _require_slow(character: Character, physics: MujocoPhysics, rate: float) -> None:
-    """MuJoCo stops nothing in less than two steps; what a choice brings along is not told."""
-    least = 2.0 / (rate * physics.substeps)
-    for group, name, key, (told, _) in (
-        ("character", character.name, "limit_solref", character.limit_solref),
-        ("physics", physics.name, "contact_solref", physics.contact_solref),
-    ):
-        brought = _brought(group, name).get(key, (told,))[0]
-        if told < 0.999 * least and told != brought:
-            raise InputError(
-                f"{group}.{key}.0={told:g}: MuJoCo takes two physics steps, {least:.4g} s; give "
-                "that or more"
-            )
-
-
-def _require_hard(character: Character, physics: LockstepPhysics) -> None:
-    """Contacts in lockstep are hard: flesh is not told there, but as a character brings it."""
-    told = character.flesh and to_dict(character.flesh)
-    whole = _brought("character", character.name)
-    if not told or not whole:
-        return
-    flesh = whole.get("flesh")
-    brought = to_dict(checked(Flesh, flesh)) if flesh else {}
-    for key, value in told.items():
-        if value != brought.get(key):
-            raise InputError(
-                f"character.flesh.{key}={brief(value)}: acts on nothing, as contacts of "
-                f"physics={physics.name} are hard; leave flesh as character={character.name} has it"
-            )
-
-
-@cache
-def _brought(group: str, name: str) -> dict[str, Any]:
-    """What is in a choice that comes with rotctl; nothing of another one."""
-    if name not in shipped_files(group):
-        return {}
-    made = composing.composed([composing.Assignment(group, name)])
-    return dict(made[group]) if made else {}
 
 
 def _require_judged(
@@ -294,21 +178,3 @@ def _require_in_time(behaviour: BehaviourSettings, duration: float, key: str = "
                     f"{key}.{schedule}: what it tells from {time:g} s on never comes, the run is "
                     f"over at {duration:g} s"
                 )
-
-
-def _require_end(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:
-    """A roll with a finish is told to end before a run of that duration [s] is over.
-
-    Of a chain's parts only those of which it was said when: a run may be cut before the others.
-    """
-    if isinstance(behaviour, ChainSettings):
-        for number, part in enumerate(behaviour.parts):
-            if "finish.after" in part.said:
-                _require_end(part.behaviour, duration, f"{part.place(number)}: behaviour")
-    if isinstance(behaviour, RollingSettings) and behaviour.finish:
-        after = behaviour.finish.after
-        if after >= duration:
-            raise InputError(
-                f"{key}.finish.after={after:g}: it is never told to end, the run is over at "
-                f"{duration:g} s; give less than that, or a longer duration"
-            )

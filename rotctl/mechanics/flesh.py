@@ -13,10 +13,10 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import SIDES
+from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
 from rotctl.settings.fields import STRICT, Fraction, Positive, each_once
 from rotctl.suggestion import instead
 
-LEAST = 1e-4  # [-] of MuJoCo's impedance, which takes a smaller one for it
 LINEAR = (0.5, 1.0)  # midpoint and power of MuJoCo's impedance: as much more as it is deeper
 
 
@@ -33,7 +33,7 @@ class Flesh:
 
     bodies: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(each_once)]
     depth: Annotated[Positive, Field(le=10)]
-    onset: Annotated[Fraction, Field(ge=LEAST)]
+    onset: Annotated[Fraction, Field(ge=IMPEDANCES[0])]
 
     def require_room(self, thick: Mapping[str, float]) -> None:
         """See that bodies are as thick [m], from their surfaces to their middles, as their flesh.

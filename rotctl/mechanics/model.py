@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.mechanics import pair_limit
+from rotctl.mechanics.assembly import add_character
 from rotctl.mechanics.bodies import (
     ROOT_BODY,
     SIDES,
@@ -24,7 +25,7 @@ from rotctl.mechanics.bodies import (
     is_character,
     lowest_and_highest,
 )
-from rotctl.mechanics.character import Character, add_character
+from rotctl.mechanics.character import Character
 from rotctl.mechanics.flesh import add_flesh
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.stature import grown

@@ -12,9 +12,10 @@ from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.behaviour import Behaviour
 from rotctl.behaviours.similarity import similar as asking
 from rotctl.caching import kept
-from rotctl.config.fit import require_fit, require_sense
+from rotctl.config.fit import require_fit
 from rotctl.config.identity import run_id
 from rotctl.config.schema import Config
+from rotctl.config.sense import require_sense
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similarity import similar
 from rotctl.mechanics import model as models

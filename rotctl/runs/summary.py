@@ -57,7 +57,9 @@ def numbers(config: Config) -> frozenset[str]:
     What is measured is what a log without rows is judged by; what is commanded is known.
     """
     behaviour, period = config.behaviour, 1.0 / config.controller.rate
-    no_rows = TrajectoryBuffer.allocate(0, 7, 6, 1, 1, 1, 1).arrays()
+    no_rows = TrajectoryBuffer.allocate(
+        steps=0, nq=7, nv=6, nu=1, capacity=1, tasks=1, bodies=1
+    ).arrays()
     judgement = judge(
         no_rows,
         config.criteria,

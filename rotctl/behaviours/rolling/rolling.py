@@ -154,6 +154,7 @@ class Rolling:
             waits = wanted.waits
         if self._lift is not None:
             turning = float(dot(on.frame.axes[1], state.momentum.angular_velocity)) / math.tau
+            # upwards alone, as in C: what is 0 keeps its sign
             self._velocities[0, 2] += turning * over_phase(self._lift, now.phase)
         pose_a, pose_b = self._poses.at(phase)
         if self._waiting is not None:

@@ -8,6 +8,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.mechanics.physics.options import Capacity, Count, Some, Substeps, disable_flag
 from rotctl.settings.fields import STRICT, Fraction, NonNegative, Positive, Vector
 
+IMPEDANCES = 1e-4, 0.9999  # [-] least and most that MuJoCo has of a contact
 PLAIN_OPTIONS = (
     "iterations",
     "tolerance",

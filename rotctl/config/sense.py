@@ -1,0 +1,114 @@
+"""Whether a run that is newly asked for comes to what it is told."""
+
+from rotctl.behaviours import BehaviourSettings
+from rotctl.behaviours.chain.settings import ChainSettings
+from rotctl.behaviours.rolling.settings import RollingSettings
+from rotctl.choices.brought import brought
+from rotctl.config.schema import Config
+from rotctl.errors import InputError
+from rotctl.mechanics.changes import Slip
+from rotctl.mechanics.character import Character
+from rotctl.mechanics.flesh import Flesh
+from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
+from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
+from rotctl.mechanics.terrain.ground import MOST_FRICTION
+from rotctl.settings.checking import brief, checked
+from rotctl.settings.fields import ends
+from rotctl.settings.writing import to_dict
+
+ROUNDED = 0.999  # [-] of two steps: a time of three digits is no less than they are
+
+
+def require_sense(config: Config) -> None:
+    """See that a run that is newly asked for comes to what it is told.
+
+    Older runs, made before this was refused, are repeated and judged as they are.
+
+    Raises:
+        InputError: a finish comes too late, the ground may be drawn as none can be, or what is
+            said of a contact acts on nothing.
+    """
+    _require_ground(config)
+    if not isinstance(config.physics, LockstepPhysics):
+        _require_contact(config.physics)
+        _require_slow(config.character, config.physics, config.controller.rate)
+    else:
+        _require_hard(config.character, config.physics)
+    _require_end(config.behaviour, config.duration)
+
+
+def _require_ground(config: Config) -> None:
+    """The ground of another plant is one that there may be, whatever is drawn, and stays one."""
+    usual, factors = config.terrain.friction, config.plant.friction
+    least, most = (usual * factor for factor in factors)
+    key, drawn, with_these = "plant.friction", brief(factors), f"terrain.friction={usual:g}"
+    if 0.0 < least <= most <= MOST_FRICTION and isinstance(config.disturbance, Slip):
+        low, high = ends(config.disturbance.friction)
+        least, most = least * low, most * high
+        key, drawn = "disturbance.friction", brief(config.disturbance.friction)
+        with_these += f" and plant.friction={brief(factors)}" if factors != (1.0, 1.0) else ""
+    if not 0.0 < least <= most <= MOST_FRICTION:
+        raise InputError(
+            f"{key}={drawn}: with {with_these} the ground has {least:g} to {most:g}, "
+            f"valid: above 0 and at most {MOST_FRICTION:g}"
+        )
+
+
+def _require_contact(physics: MujocoPhysics) -> None:
+    """What MuJoCo would take for another number, without a word, is refused."""
+    onset, firm, _, middle, power = physics.contact_solimp
+    for i, value in ((0, onset), (1, firm), (3, middle)):
+        if not IMPEDANCES[0] <= value <= IMPEDANCES[1]:
+            raise InputError(
+                f"physics.contact_solimp.{i}={value:g}: MuJoCo takes the nearest of "
+                f"{IMPEDANCES[0]:g} to {IMPEDANCES[1]:g}; give one of them"
+            )
+    if power < 1.0:
+        raise InputError(f"physics.contact_solimp.4={power:g}: MuJoCo takes 1; give that or more")
+
+
+def _require_slow(character: Character, physics: MujocoPhysics, rate: float) -> None:
+    """MuJoCo stops nothing in less than two steps; what a choice brings along is not told."""
+    least = 2.0 / (rate * physics.substeps)
+    for group, name, key, (told, _) in (
+        ("character", character.name, "limit_solref", character.limit_solref),
+        ("physics", physics.name, "contact_solref", physics.contact_solref),
+    ):
+        if told < ROUNDED * least and told != brought(group, name).get(key, (told,))[0]:
+            raise InputError(
+                f"{group}.{key}.0={told:g}: MuJoCo takes two physics steps, {least:.4g} s; give "
+                "that or more"
+            )
+
+
+def _require_hard(character: Character, physics: LockstepPhysics) -> None:
+    """Contacts in lockstep are hard: flesh is not told there, but as a character brings it."""
+    whole = brought("character", character.name) if character.flesh else {}
+    if not character.flesh or not whole:
+        return
+    flesh = whole.get("flesh")
+    usual = to_dict(checked(Flesh, flesh)) if flesh else {}
+    for key, value in to_dict(character.flesh).items():
+        if value != usual.get(key):
+            raise InputError(
+                f"character.flesh.{key}={brief(value)}: acts on nothing, as contacts of "
+                f"physics={physics.name} are hard; leave flesh as character={character.name} has it"
+            )
+
+
+def _require_end(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:
+    """A roll with a finish is told to end before a run of that duration [s] is over.
+
+    Of a chain's parts only those of which it was said when: a run may be cut before the others.
+    """
+    if isinstance(behaviour, ChainSettings):
+        for number, part in enumerate(behaviour.parts):
+            if "finish.after" in part.said:
+                _require_end(part.behaviour, duration, f"{part.place(number)}: behaviour")
+    if isinstance(behaviour, RollingSettings) and behaviour.finish:
+        after = behaviour.finish.after
+        if after >= duration:
+            raise InputError(
+                f"{key}.finish.after={after:g}: it is never told to end, the run is over at "
+                f"{duration:g} s; give less than that, or a longer duration"
+            )
