@@ -478,6 +478,41 @@ def test_inspect_shows_everything_and_checks_it(cli, made):
     assert stdout.endswith("\nintegrity  complete, checksums match\n")
 
 
+@pytest.fixture(scope="module")
+def falsified(made, tmp_path_factory):
+    """A log whose outcome somebody has written anew."""
+    import h5py
+
+    path = tmp_path_factory.mktemp("falsified") / "run.h5"
+    path.write_bytes(made[2].read_bytes())
+    with h5py.File(path, "r+") as file:
+        row = json.loads(file.attrs["outcome"])
+        file.attrs["outcome"] = json.dumps(row | {"success": True, "failure_reason": ""})
+    return path
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "--again", "{log}", "--out", "runs", "--quiet"],
+        ["show", "{log}"],
+        ["replay", "{log}", "--html", "x.html"],
+        ["plot", "{log}", "--out", "x.svg"],
+        ["export", "{log}", "--to", "bvh", "--out", "x.bvh"],
+        ["diff", "{log}", "{log}"],
+        ["new", "start", "fallen", "--from", "{log}"],
+    ],
+)
+def test_a_log_that_was_changed_is_told_whatever_it_is_used_for(
+    cli, falsified, tmp_path, monkeypatch, arguments
+):
+    monkeypatch.chdir(tmp_path)
+    code, _, stderr = cli(*(text.format(log=falsified) for text in arguments))
+    said = "damaged, its content does not match its SHA-256; taken as it is"
+    assert code == 0
+    assert {*stderr.splitlines()} == {f"rotctl: {falsified}: {said}"}
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [

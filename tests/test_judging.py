@@ -3,7 +3,9 @@
 import csv
 import io
 import json
+import shutil
 
+import h5py
 import pytest
 from here import Here, swept, without_processes
 from sweep_cli import logs
@@ -243,3 +245,18 @@ def test_a_chain_is_judged_by_what_its_parts_have_by_themselves(tmp_path):
     less = criteria(["criteria=chain", "criteria.parts.0.rest=0.1"])
     (row,) = judge(folder, less, Here()).table.rows.to_dict("records")
     assert row["failure_reason"] == "part 2 of 3, square, has not begun"
+
+
+def test_a_log_that_was_changed_is_not_judged(made, tmp_path):
+    folder = tmp_path / "sweep"
+    shutil.copytree(made, folder)
+    first, second = logs(folder)
+    with h5py.File(first, "r+") as file:
+        file["trajectory/com"][5, 2] += 0.1
+    table = judge(folder, criteria([STRICT]), Here()).table
+    assert table.rows.set_index("run_id")["status"].to_dict() == {
+        first.parent.name: "not judged",
+        second.parent.name: "done",
+    }
+    (note,) = table.notes
+    assert note.endswith("damaged, its content does not match its SHA-256")

@@ -10,6 +10,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from xml.etree import ElementTree as Xml
 
+import h5py
 import pandas as pd
 import pytest
 from here import swept
@@ -324,6 +325,17 @@ def test_a_strangers_names_are_text_everywhere(sweep, tmp_path):
     assert EVIL in index.text
     assert index.all("script") == []
     Xml.parse(tmp_path / "site" / "junit.xml")
+
+
+def test_a_log_that_was_changed_is_not_played(sweep, tmp_path):
+    for log in sweep.glob("*/run.h5"):
+        with h5py.File(log, "r+") as file:
+            file["trajectory/qpos"][5, 2] += 0.1
+    build.MOST_DRAWN = 9  # monkeypatch puts it back
+    report(sweep, tmp_path / "site")
+    assert list((tmp_path / "site").glob("replays/*.html")) == []
+    text = " ".join(Page(tmp_path / "site" / "index.html").text.split())
+    assert "run.h5: damaged, its content does not match its SHA-256" in text
 
 
 def test_missing_failed_and_damaged_runs_are_told(sweep, tmp_path):

@@ -141,10 +141,11 @@ def answer(question: Question) -> Answer:
     """The summary row of a logged run by its new criteria, with its metrics.
 
     Raises:
-        LogError: the log cannot be read.
+        LogError: the log cannot be read, or is damaged.
         InputError: such criteria do not judge such a run, or a metric has a column's name.
     """
     log = RunLog.open(question.log, linked=False)
+    log.verify()
     summary = judged_again(log, check(dict(question.config)))
     complaints, remarks = [], []
     for metric in question.metrics:

@@ -3,10 +3,15 @@
 import argparse
 import os
 import re
+import sys
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from rotctl.errors import InputError
+from rotctl.cli.wording import one_line
+from rotctl.errors import InputError, LogError
+
+if TYPE_CHECKING:
+    from rotctl.log import RunLog
 
 LOG_NAME = "run.h5"  # rotctl.log's, which takes a while to import
 INTERRUPTED_NAME = "interrupted.h5"  # rotctl.runs.folder's
@@ -61,6 +66,23 @@ def log_file(path: Path) -> Path:
             f"rotctl ls {path} lists them"
         )
     return path / LOG_NAME
+
+
+def opened_log(path: Path) -> "RunLog":
+    """The log that a user names, see `log_file`; that its content was changed is said on stderr.
+
+    Raises:
+        InputError: there is none.
+        LogError: it cannot be opened.
+    """
+    from rotctl.log import RunLog
+
+    log = RunLog.open(log_file(path))
+    try:
+        log.verify()
+    except LogError as error:
+        print(f"rotctl: {one_line(str(error))}; taken as it is", file=sys.stderr)
+    return log
 
 
 def second(text: str) -> float:

@@ -6,9 +6,10 @@ from pathlib import Path
 
 from rotctl.cli.commands.arguments import (
     LOG_HELP,
+    LOG_NAME,
     RUNS,
     Commands,
-    log_file,
+    opened_log,
     path_name,
     role_and_name,
     run_folder,
@@ -45,10 +46,9 @@ def new(arguments: argparse.Namespace) -> int:
 
     kind, name, source, at = arguments.kind, arguments.name, arguments.source, arguments.at
     if kind == "start" and _is_run(source):
-        from rotctl.log import RunLog
         from rotctl.runs.recorded_start import make as recorded
 
-        print(recorded(name, RunLog.open(log_file(Path(source))), at))
+        print(recorded(name, opened_log(Path(source)), at))
         return 0
     if at is not None:
         raise InputError(f"--at={at:g}: is a time of a run, and --from={source} is none")
@@ -173,5 +173,7 @@ def diff(arguments: argparse.Namespace) -> int:
     for path in both:
         if not path.exists():
             raise InputError(f"{path}: no such file or folder")
+        if path.is_file() or (path / LOG_NAME).is_file():
+            opened_log(path)  # for what it says of one that was changed
     print(printable(compared(*both)))
     return 0

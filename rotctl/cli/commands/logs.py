@@ -5,7 +5,15 @@ import sys
 
 from rotctl import files
 from rotctl.bars import bar, following
-from rotctl.cli.commands.arguments import FRAMES, LOG_HELP, Commands, log_file, path_name, second
+from rotctl.cli.commands.arguments import (
+    FRAMES,
+    LOG_HELP,
+    Commands,
+    log_file,
+    opened_log,
+    path_name,
+    second,
+)
 from rotctl.cli.wording import described, printable, repeated
 from rotctl.errors import InputError
 
@@ -37,15 +45,13 @@ def add_render(commands: Commands) -> None:
 
 def render(arguments: argparse.Namespace) -> int:
     """Draw a filmstrip, a video or both from a log."""
-    from rotctl.log import RunLog
-
     if arguments.filmstrip is None and arguments.video is None:
         raise InputError("nothing to draw: give --filmstrip OUT.png, --video OUT.mp4 or both")
     if arguments.video is not None:
         files.require_ending(arguments.video, ".mp4")
     if arguments.frames is not None and arguments.filmstrip is None:
         raise InputError(f"--frames={arguments.frames}: is of a filmstrip; a video has 30 a second")
-    log, window = RunLog.open(log_file(arguments.log)), (arguments.start, arguments.end)
+    log, window = opened_log(arguments.log), (arguments.start, arguments.end)
     if arguments.filmstrip is not None:
         from rotctl.report.filmstrip import filmstrip
 
@@ -84,11 +90,10 @@ def add_replay(commands: Commands) -> None:
 
 def replay(arguments: argparse.Namespace) -> int:
     """Write a page that plays a log in the browser."""
-    from rotctl.log import RunLog
     from rotctl.report.replay import replay
 
-    log = RunLog.open(log_file(arguments.log))
-    other = arguments.compare and RunLog.open(log_file(arguments.compare))
+    log = opened_log(arguments.log)
+    other = arguments.compare and opened_log(arguments.compare)
     out = arguments.html or log.path.with_name("replay.html")
     replay(log, out, other)
     print(out)
@@ -127,12 +132,11 @@ def add_plot(commands: Commands) -> None:
 
 def plot(arguments: argparse.Namespace) -> int:
     """Plot a log on one page."""
-    from rotctl.log import RunLog
     from rotctl.report.plan import plan
     from rotctl.report.plot import plot
     from rotctl.report.prints import prints
 
-    log = RunLog.open(log_file(arguments.log))
+    log = opened_log(arguments.log)
     name, drawn = ("plan.png", plan) if arguments.from_above else ("plot.png", plot)
     if arguments.from_behind:
         name, drawn = "prints.png", prints
@@ -162,9 +166,8 @@ def add_export(commands: Commands) -> None:
 def export(arguments: argparse.Namespace) -> int:
     """Write a log in another format."""
     from rotctl.export import export
-    from rotctl.log import RunLog
 
-    log = RunLog.open(log_file(arguments.log))
+    log = opened_log(arguments.log)
     print(export(log, arguments.to, arguments.out))
     time = log["trajectory/time"]
     if arguments.to == "csv" and len(time) > 1:  # the one format that has no place for it

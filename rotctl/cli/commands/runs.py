@@ -14,7 +14,7 @@ from rotctl.cli.commands.arguments import (
     OVERRIDES_HELP,
     RUNS,
     Commands,
-    log_file,
+    opened_log,
     path_name,
     run_folder,
 )
@@ -68,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
     mujoco_without_opengl()
     from rotctl.behaviours.chain.settings import first_stage
     from rotctl.config.loading import load, own_file, rebuilt, recorded
-    from rotctl.log import LOG_NAME, RunLog
+    from rotctl.log import LOG_NAME
     from rotctl.metrics.criteria.judge import settling
     from rotctl.runs.run import built, run
 
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif row := _row_at(arguments.again):
         config = rebuilt(arguments.again, lambda: row.config)
     else:
-        config = recorded(RunLog.open(log_file(arguments.again)))
+        config = recorded(opened_log(arguments.again))
     steps = round(config.duration * config.controller.rate)
     what = f"{config.behaviour.name} seed {config.seed}"
     with bar(what, "step", steps, hidden=arguments.quiet) as shown:
@@ -213,11 +213,10 @@ def add_show(commands: Commands) -> None:
 def show(arguments: argparse.Namespace) -> int:
     """Print the composed config."""
     from rotctl.config.loading import load, recorded
-    from rotctl.log import RunLog
     from rotctl.settings.writing import part_to_yaml, to_yaml
 
     run = _only_run(arguments.overrides)
-    config = recorded(RunLog.open(log_file(run))) if run else load(arguments.overrides)
+    config = recorded(opened_log(run)) if run else load(arguments.overrides)
     print(part_to_yaml(config, arguments.part) if arguments.part else to_yaml(config), end="")
     return 0
 

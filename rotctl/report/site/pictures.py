@@ -67,6 +67,7 @@ def _picture(role: str, row: Row, run: StoredRun, folder: Path, name: str, put: 
         return Picture(role, run.run_id + which, "", "", "", f"no replay: {again}")
     try:
         log = RunLog.open(folder / run.log, linked=False)
+        log.verify()
         top = title(log)
         site = replay.Site(f"../{SCRIPT}", "../index.html")
         put(f"replays/{name}.html", encoded(replay.page(log, site=site)))
