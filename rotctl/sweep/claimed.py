@@ -1,7 +1,7 @@
 """Whether an experiment's claims can be judged at all, before hours are spent on its runs."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
@@ -45,41 +45,58 @@ def require_claims(overrides: Sequence[str], runs: Iterable[Planned]) -> None:
                 "measured, and one of your own has no claims: rotctl judge DIR --metric tells it; "
                 f"{instead(claim.metric, METRICS)}"
             )
+    told = [_Told(f"claim {it.id}", it.where, it.metric) for it in read.claims]
+    told += [_Told(f"deviations.{i}", it.where) for i, it in enumerate(read.deviations)]
     here: list[Values] = [(run.values, run.config) for run in runs]
-    told = [(f"claim {claim.id}", claim.where) for claim in read.claims]
-    told += [(f"deviations.{i}", deviation.where) for i, deviation in enumerate(read.deviations)]
-    absent = [(who, where) for who, where in told if not _picked(where, here)]
-    unmeasured = [claim for claim in read.claims if _lacks(claim.metric, claim.where, here)]
+    absent, unmeasured = _faults(told, here)
     if (absent or unmeasured) and len(overrides) > 1:
         own = experiments.matrix([f"{experiments.PREFIX}{name}", "seed=0"])
         here = [(point.values, point.config) for point in points(own)]
-        absent = [(who, where) for who, where in absent if not _picked(_without_seed(where), here)]
-        unmeasured = [
-            claim for claim in read.claims if _lacks(claim.metric, _without_seed(claim.where), here)
-        ]
+        faulty = [*absent, *(one for one, _ in unmeasured)]
+        absent, unmeasured = _faults([one.of_any_seed for one in faulty], here)
     if absent:
-        who, where = absent[0]
+        one = absent[0]
         raise InputError(
-            f"{experiments.PREFIX}{name}: {who}: where: no run of its grid has "
-            f"{_wrong(where, here)}"
+            f"{experiments.PREFIX}{name}: {one.who}: where: no run of its grid has "
+            f"{_wrong(one.where, here)}"
         )
     if unmeasured:
-        claim = unmeasured[0]
-        valid = [SUCCESS_RATE, *sorted(_measured(_picked(_without_seed(claim.where), here)))]
+        one, measured = unmeasured[0]
         raise InputError(
-            f"{experiments.PREFIX}{name}: claim {claim.id}: metric: no run that it is about has a "
-            f"number of {claim.metric!r}; {instead(claim.metric, valid)}"
+            f"{experiments.PREFIX}{name}: {one.who}: metric: no run that it is about has a "
+            f"number of {one.metric!r}; {instead(one.metric, [SUCCESS_RATE, *sorted(measured)])}"
         )
+
+
+class _Told(NamedTuple):
+    """What an experiment says of runs: who says it, of which, and what of them it asks for."""
+
+    who: str
+    where: Mapping[str, Any]
+    metric: str = SUCCESS_RATE  # of which every run has its share
+
+    @property
+    def of_any_seed(self) -> "_Told":
+        return self._replace(where={key: it for key, it in self.where.items() if key != "seed"})
+
+
+def _faults(
+    told: Iterable[_Told], runs: Sequence[Values]
+) -> tuple[list[_Told], list[tuple[_Told, set[str]]]]:
+    """What is about none of these runs; and what asks for a metric that its runs have not."""
+    absent, unmeasured = [], []
+    for one in told:
+        about = _picked(one.where, runs)
+        measured = _measured(about) if about and one.metric != SUCCESS_RATE else {one.metric}
+        if not about:
+            absent.append(one)
+        elif one.metric not in measured:
+            unmeasured.append((one, measured))
+    return absent, unmeasured
 
 
 def _picked(where: Mapping[str, Any], runs: Sequence[Values]) -> list[Values]:
     return [run for run in runs if all(_value(key, run) == it for key, it in where.items())]
-
-
-def _lacks(metric: str, where: Mapping[str, Any], runs: Sequence[Values]) -> bool:
-    """Whether there are runs that a claim is about, and none of them has its metric."""
-    about = _picked(where, runs) if metric != SUCCESS_RATE else []
-    return bool(about) and metric not in _measured(about)
 
 
 def _measured(runs: Sequence[Values]) -> set[str]:
@@ -89,10 +106,6 @@ def _measured(runs: Sequence[Values]) -> set[str]:
         for _, config in runs
     }
     return {name for config in apart.values() for name in numbers(config)}
-
-
-def _without_seed(where: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in where.items() if key != "seed"}
 
 
 def _value(key: str, run: Values) -> Any:
