@@ -126,7 +126,7 @@ def complaint(chosen, changes):
          {"disturbance.friction": [0.5, 4.0], "disturbance.time": 0.0,
           "plant.friction": [1.0, 3.0]},
          "disturbance.friction=[0.5, 4.0]: with terrain.friction=1 and plant.friction=[1.0, 3.0] "
-         "the ground has 0.5 to 12, valid: above 0 and at most 10"),
+         "the ground has 0.5 to 12, valid: 1e-05, the least that MuJoCo has, to 10"),
         (STAND, {"plant.friction": [0.0, 1.0]},
          "plant.friction=[0.0, 1.0]: must be factors above 0 and at most 100"),
         (STAND, {"physics.contact_solimp": [0.9, 1.0, 0.001, 0.5, 2.0]},
@@ -145,11 +145,21 @@ def complaint(chosen, changes):
         (STAND, {"character.exclude_from_control": ["head", "head"]},
          "character.exclude_from_control: names head twice"),
         ([*STAND, "plant=varied"], {"terrain.friction": 10.0},
-         "plant.friction=[0.9, 1.1]: with terrain.friction=10 the ground has 9 to 11, valid: above "
-         "0 and at most 10"),
+         "plant.friction=[0.9, 1.1]: with terrain.friction=10 the ground has 9 to 11, valid: "
+         "1e-05, the least that MuJoCo has, to 10"),
         (STAND, {"plant.friction": [1.0, 50.0]},
-         "plant.friction=[1.0, 50.0]: with terrain.friction=1 the ground has 1 to 50, valid: above "
-         "0 and at most 10"),
+         "plant.friction=[1.0, 50.0]: with terrain.friction=1 the ground has 1 to 50, valid: "
+         "1e-05, the least that MuJoCo has, to 10"),
+        (STAND, {"terrain.friction": 9e-6},
+         "terrain.friction=9e-06: valid: 1e-05, the least that MuJoCo has, to 10"),
+        ([*STAND, "disturbance=slippery"],
+         {"disturbance.friction": 1e-6, "disturbance.time": 0.0},
+         "disturbance.friction=1e-06: with terrain.friction=1 the ground has 1e-06 to 1e-06, "
+         "valid: 1e-05, the least that MuJoCo has, to 10"),
+        (STAND, {"physics.disable": ["autoreset", "autoreset"]},
+         "physics.disable: names autoreset twice"),
+        (STAND, {"behaviour.tasks.balance.aim.bodies": ["foot", "foot"]},
+         "behaviour.tasks.balance.aim.bodies: names foot twice"),
         ([*STAND, "disturbance=load"], {"disturbance.mass": 1e9},
          "disturbance.mass=1000000000.0: must be at most 1000 kg"),
         ([*STAND, "disturbance=load"],

@@ -11,7 +11,7 @@ from rotctl.mechanics.character import Character
 from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
 from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
-from rotctl.mechanics.terrain.ground import MOST_FRICTION
+from rotctl.mechanics.terrain.ground import LEAST_FRICTION, MOST_FRICTION
 from rotctl.settings.checking import brief, checked
 from rotctl.settings.fields import ends
 from rotctl.settings.writing import to_dict
@@ -38,20 +38,31 @@ def require_sense(config: Config) -> None:
 
 
 def _require_ground(config: Config) -> None:
-    """The ground of another plant is one that there may be, whatever is drawn, and stays one."""
+    """The ground is one that there may be, of another plant too, whatever is drawn, and stays one.
+
+    With less friction than MuJoCo has it is the same ground as with that.
+    """
     usual, factors = config.terrain.friction, config.plant.friction
-    least, most = (usual * factor for factor in factors)
-    key, drawn, with_these = "plant.friction", brief(factors), f"terrain.friction={usual:g}"
-    if 0.0 < least <= most <= MOST_FRICTION and isinstance(config.disturbance, Slip):
+    key, drawn, with_these, least, most = "terrain.friction", f"{usual:g}", "", usual, usual
+    if _may_be(least, most) and factors != (1.0, 1.0):
+        key, drawn, with_these = "plant.friction", brief(factors), f"terrain.friction={usual:g}"
+        least, most = (usual * factor for factor in factors)
+    if _may_be(least, most) and isinstance(config.disturbance, Slip):
         low, high = ends(config.disturbance.friction)
         least, most = least * low, most * high
         key, drawn = "disturbance.friction", brief(config.disturbance.friction)
+        with_these = f"terrain.friction={usual:g}"
         with_these += f" and plant.friction={brief(factors)}" if factors != (1.0, 1.0) else ""
-    if not 0.0 < least <= most <= MOST_FRICTION:
+    if not _may_be(least, most):
+        has = f"with {with_these} the ground has {least:g} to {most:g}, " if with_these else ""
         raise InputError(
-            f"{key}={drawn}: with {with_these} the ground has {least:g} to {most:g}, "
-            f"valid: above 0 and at most {MOST_FRICTION:g}"
+            f"{key}={drawn}: {has}valid: {LEAST_FRICTION:g}, the least that MuJoCo has, to "
+            f"{MOST_FRICTION:g}"
         )
+
+
+def _may_be(least: float, most: float) -> bool:
+    return LEAST_FRICTION <= least <= most <= MOST_FRICTION
 
 
 def _require_contact(physics: MujocoPhysics) -> None:

@@ -10,6 +10,7 @@ from pydantic import Field
 from rotctl.maths.rotations import Array
 from rotctl.settings.fields import Positive
 
+LEAST_FRICTION = float(mujoco.mjMINMU)  # [-] for which MuJoCo takes whatever is less
 MOST_FRICTION = 10.0  # [-]
 Friction = Annotated[Positive, Field(le=MOST_FRICTION)]  # sliding, of ground and character [-]
 
