@@ -6,6 +6,7 @@ import math
 import shutil
 from dataclasses import FrozenInstanceError, asdict
 
+import mujoco
 import pytest
 import yaml
 
@@ -627,3 +628,22 @@ def test_of_two_choices_that_are_added_the_later_one_counts():
     roll, seat, rest = "behaviour=forward_roll", "+finish=seat", ["+course=circle", "+finish=stand"]
     assert load([roll, seat, *rest]) == load([roll, *rest])
     assert load([roll, seat, "finish=stand"]) == load([roll, "+finish=stand"])
+
+
+@pytest.mark.parametrize(
+    ("key", "one", "other"),
+    [
+        ("character.flesh.bodies", "[chest,thigh]", "[thigh,chest]"),
+        ("character.exclude_from_control", "[head,foot_l,foot_r]", "[foot_r,head,foot_l]"),
+        ("physics.disable", "[autoreset,warmstart]", "[warmstart,autoreset]"),
+    ],
+)
+def test_an_order_that_acts_on_nothing_makes_no_other_config(key, one, other):
+    assert load([f"{key}={one}"]) == load([f"{key}={other}"])
+
+
+def test_a_flag_of_the_engine_is_one_however_it_is_written():
+    """Flags are added up: the first, told twice, would be another one."""
+    flags = build(load(["physics.disable=[warmstart,autoreset]"])).model.mj.opt.disableflags
+    kinds = mujoco.mjtDisableBit
+    assert flags == int(kinds.mjDSBL_AUTORESET) | int(kinds.mjDSBL_WARMSTART)

@@ -1,23 +1,25 @@
 """The numbers of a character: bodies, joints and capsules of `conf/character/*.yaml`."""
 
-from dataclasses import field
+from collections.abc import Sequence
+from dataclasses import field, replace
 from math import dist
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.flesh import Flesh
 from rotctl.settings.fields import (
     SPARSE,
     STRICT,
     Finite,
     Fraction,
+    Names,
     NonNegative,
     Positive,
     Range,
     Vector,
-    each_once,
 )
 
 Colour = tuple[Fraction, Fraction, Fraction]
@@ -131,14 +133,14 @@ class Character:
     joint_damping: NonNegative
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]
-    trunk: Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(each_once)]
-    exclude_from_control: Annotated[tuple[str, ...], AfterValidator(each_once)]
+    trunk: Annotated[Names, Field(min_length=1)]
+    exclude_from_control: Names
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     self_collision: tuple[tuple[str, str], ...] = ()
     drawn: Drawn | None = None
     gains_for: Drawn | None = None
     strength: Annotated[Positive, Field(le=1000)] = 1.0
-    absent: tuple[str, ...] = ()
+    absent: Names = ()
     flesh: Flesh | None = field(default=None, metadata=SPARSE)
     description: str = ""
 
@@ -150,9 +152,19 @@ class Character:
             )
         if self.flesh:
             self.flesh.require_room({body.name: body.thickness for body in self.bodies})
+            flesh = replace(self.flesh, bodies=_in_order(self.flesh.bodies, self.bodies))
+            object.__setattr__(self, "flesh", flesh)
+        excluded = _in_order(self.exclude_from_control, self.bodies)
+        object.__setattr__(self, "exclude_from_control", excluded)
         for (what, most), count in zip(MOST.items(), _counts(self), strict=True):
             if count > most:
                 raise ValueError(f"has {count} {what}; at most {most} can be simulated")
+
+
+def _in_order(names: Names, bodies: Sequence[Body]) -> Names:
+    """Names in the order of the bodies: in whichever they are written acts on nothing."""
+    order = [body.name + side for body in bodies for side in ("", *SIDES)]
+    return tuple(sorted(names, key=lambda name: order.index(name) if name in order else len(order)))
 
 
 def _counts(character: Character) -> tuple[int, int, int, int]:

@@ -44,8 +44,11 @@ def ends(drawn: float | tuple[float, float]) -> tuple[float, float]:
 
 
 def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Names none of which comes twice: the second would make another run and nothing else."""
+    """Names none of which comes twice: the second would make another run and, mostly, no more."""
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"names {name:.60} twice")
     return names
+
+
+Names = Annotated[tuple[str, ...], AfterValidator(each_once)]

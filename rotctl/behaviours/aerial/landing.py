@@ -23,7 +23,7 @@ from rotctl.mechanics.bodies import ROOT_BODY, body_ids, lowest_and_highest
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
 from rotctl.motion import Poses, Turn, make_pose_pair
-from rotctl.settings.fields import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 ATTITUDES = np.arange(-80, 141) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
 
@@ -44,7 +44,7 @@ class LandingSettings:
     """
 
     pose: dict[str, Turn]
-    bodies: tuple[str, ...]
+    bodies: Names
     ankle: str
     time: NonNegative
     share: NonNegative

@@ -21,7 +21,7 @@ from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, Finite, Fraction, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Fraction, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -43,7 +43,7 @@ class Lean:
     """
 
     law: Literal["lean"]
-    bodies: tuple[str, ...]
+    bodies: Names
     margin: NonNegative
     speed: Finite
     eager: Positive
@@ -89,7 +89,7 @@ class Launch:
     """
 
     law: Literal["launch"]
-    bodies: tuple[str, ...]
+    bodies: Names
     gain: NonNegative
     margin: NonNegative
     forward: Finite

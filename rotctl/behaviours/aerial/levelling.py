@@ -27,7 +27,7 @@ from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes, Spin
 from rotctl.motion import Turn, make_pose
 from rotctl.motion.sides import mirrored_angles
-from rotctl.settings.fields import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 STEP = 0.05  # [s] of the plan, in which the body turns by up to 60 degrees
 LEAST_PARTS, MOST_PARTS = 6, 100  # of the plan: one from the stratosphere takes no longer
@@ -55,7 +55,7 @@ class LevellingSettings:
     interval: Positive
     twist: NonNegative
     effort: NonNegative
-    shapes: tuple[str, ...] = ()
+    shapes: Names = ()
 
 
 class Levelled(NamedTuple):

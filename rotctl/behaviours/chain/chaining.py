@@ -26,7 +26,7 @@ from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.fields import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.chain.settings import ChainSettings
@@ -47,7 +47,7 @@ class RestSettings:
     """
 
     seconds: NonNegative
-    feet: Annotated[tuple[str, ...], Field(min_length=1)]
+    feet: Annotated[Names, Field(min_length=1)]
     lean: Positive
     speed: Positive
     height: Positive

@@ -12,7 +12,7 @@ from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Positive
+from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Names, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -46,7 +46,7 @@ class OnFeet:
     """
 
     kind: Literal["on_feet"]
-    feet: Annotated[tuple[str, ...], Field(min_length=1)]
+    feet: Annotated[Names, Field(min_length=1)]
     out: Positive
     lean: Annotated[Positive, Field(le=180.0)]
     speed: Positive

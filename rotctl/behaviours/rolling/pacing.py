@@ -15,7 +15,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.errors import InputError
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 Phase = Annotated[Finite, Field(ge=-1, le=1)]  # [rev] who means degrees is told
 Share = Annotated[NonNegative, Field(le=1)]
@@ -70,7 +70,7 @@ class PaceSettings:
     surge_from: Phase
     wait: Phase
     width: Annotated[Positive, Field(le=0.5)]
-    over: Annotated[tuple[str, ...], Field(min_length=1)]
+    over: Annotated[Names, Field(min_length=1)]
     ahead: Finite
     settling: tuple[NonNegative, NonNegative]
     brake: Annotated[Positive, Field(ge=1)]

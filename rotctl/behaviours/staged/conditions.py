@@ -16,7 +16,7 @@ from rotctl.behaviours.standing.wheeling import beyond
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, Finite, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -153,7 +153,7 @@ class Tilted:
     """The centre of mass leans so far over the middle of these bodies, to forward [deg]."""
 
     kind: Literal["tilted"]
-    bodies: tuple[str, ...]
+    bodies: Names
     angle: Finite
 
     def check(self, model: Model, key: str) -> None:
@@ -177,7 +177,7 @@ class Passed:
     """
 
     kind: Literal["passed"]
-    bodies: tuple[str, ...]
+    bodies: Names
     distance: Finite
 
     def check(self, model: Model, key: str) -> None:
@@ -199,7 +199,7 @@ class Leaves:
     """
 
     kind: Literal["leaves"]
-    bodies: tuple[str, ...]
+    bodies: Names
     after: NonNegative
     angle: Finite
 
@@ -225,7 +225,7 @@ class Over:
     """
 
     kind: Literal["over"]
-    bodies: tuple[str, ...]
+    bodies: Names
     within: Positive
     speed: Positive
 

@@ -12,7 +12,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -65,7 +65,7 @@ class Above:
     """
 
     law: Literal["above"]
-    bodies: tuple[str, ...]
+    bodies: Names
     height: Positive
     most: Positive
     ahead: Finite = 0.0

@@ -23,7 +23,7 @@ from rotctl.control.supervisor import SupervisorName
 from rotctl.mechanics.model import Model
 from rotctl.motion import Angle, Poses
 from rotctl.motion.sides import exchanged, mirrored_angles, other_side
-from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Vector
+from rotctl.settings.fields import SPARSE, STRICT, Finite, Names, NonNegative, Vector
 from rotctl.suggestion import instead
 
 
@@ -117,8 +117,8 @@ class Stage:
     contact: str = ""
     lead: NonNegative = 0.0
     beyond: Beyond | None = field(default=None, metadata=SPARSE)
-    held_out: tuple[str, ...] = ()
-    toes: tuple[str, ...] = ()
+    held_out: Names = ()
+    toes: Names = ()
     lying: Lying | None = None
     to: Finite | None = None
 

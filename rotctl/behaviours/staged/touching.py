@@ -11,7 +11,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_ids, lowest_and_highest
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.terrain.pool import Basin
-from rotctl.settings.fields import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -23,7 +23,7 @@ class Touches:
     """
 
     kind: Literal["touches"]
-    bodies: tuple[str, ...]
+    bodies: Names
     after: NonNegative = 0.0
 
     def check(self, model: Model, key: str) -> None:
@@ -58,7 +58,7 @@ class Lands:
     """As `touches`, on the way down: feet that leave the ground in their time do not count."""
 
     kind: Literal["lands"]
-    bodies: tuple[str, ...]
+    bodies: Names
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where this stands."""
@@ -75,7 +75,7 @@ class Enters:
     """One of these bodies is under water."""
 
     kind: Literal["enters"]
-    bodies: tuple[str, ...]
+    bodies: Names
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there, and where there is no water."""

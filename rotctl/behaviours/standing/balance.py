@@ -14,7 +14,7 @@ from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -40,7 +40,7 @@ class Capture:
     """
 
     law: Literal["capture"]
-    bodies: tuple[str, ...]
+    bodies: Names
     gain: NonNegative
     margin: NonNegative
     height: Positive

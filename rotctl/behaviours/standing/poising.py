@@ -30,7 +30,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, Triple, cross, dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 NARROW = 0.05  # [m] hands that are closer make no line
 
@@ -47,7 +47,7 @@ class Poise:
     """
 
     law: Literal["poise"]
-    bodies: tuple[str, ...]
+    bodies: Names
     rate: Positive
     gain: NonNegative
     margin: NonNegative
@@ -93,7 +93,7 @@ class Shift:
     """
 
     law: Literal["shift"]
-    bodies: tuple[str, ...]
+    bodies: Names
     rate: Positive
     most: Positive
     ahead: Finite = 0.0

@@ -21,7 +21,7 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, cross, dot
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 SLOWEST = 1.0  # [rad/s] the slowest turn by which the time to a touch-down is reckoned
@@ -82,8 +82,8 @@ class Carry:
     """
 
     law: Literal["carry"]
-    bodies: tuple[str, ...]
-    hands: tuple[str, ...]
+    bodies: Names
+    hands: Names
     speed: Finite
     eager: Positive
     gain: NonNegative

@@ -1,14 +1,21 @@
 """MuJoCo's own physics: every option set, so that a new default cannot change a result."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import mujoco
+from pydantic import AfterValidator
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.mechanics.physics.options import Capacity, Count, Some, Substeps, disable_flag
-from rotctl.settings.fields import STRICT, Fraction, NonNegative, Positive, Vector
+from rotctl.settings.fields import STRICT, Fraction, NonNegative, Positive, Vector, each_once
 
 IMPEDANCES = 1e-4, 0.9999  # [-] least and most that MuJoCo has of a contact
+# In one order, however it is written: the flags add up, and one that comes twice is another one.
+Disabled = Annotated[
+    tuple[Literal["autoreset", "warmstart", "eulerdamp", "filterparent"], ...],
+    AfterValidator(each_once),
+    AfterValidator(lambda names: tuple(sorted(names))),
+]
 PLAIN_OPTIONS = (
     "iterations",
     "tolerance",
@@ -47,7 +54,7 @@ class MujocoPhysics:
     impratio: Positive
     density: NonNegative
     viscosity: NonNegative
-    disable: tuple[Literal["autoreset", "warmstart", "eulerdamp", "filterparent"], ...]
+    disable: Disabled
     contact_solref: tuple[Positive, Positive]
     contact_solimp: tuple[Fraction, Fraction, Positive, Fraction, Positive]
     contact_capacity: Capacity
