@@ -10,7 +10,7 @@ import fcntl
 import os
 import stat
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from io import FileIO
 from pathlib import Path
@@ -140,7 +140,8 @@ def _beside(path: Path, durable: bool) -> Iterator[tuple[Path, FileIO]]:
         if durable:
             sync(path.parent)
     except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+        reason = _dangling(path.parents) or error.strerror or error
+        raise InputError(f"cannot write {path}: {reason}") from None
 
 
 def _new(part: Path) -> tuple[FileIO, Path]:
@@ -233,11 +234,18 @@ def _make(path: Path, linked: bool) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}") from None
+        reason = _dangling([path, *path.parents]) or error.strerror or error
+        raise InputError(f"cannot write {path}: {reason}") from None
     if not linked and path.is_symlink():
         raise InputError(f"cannot write {path}: is a link")
     if not os.access(path, os.W_OK):
         raise InputError(f"cannot write {path}: no permission, or read-only")
+
+
+def _dangling(folders: Iterable[Path]) -> str:
+    """Which of them is a link to nothing, of which the system says that it exists, or does not."""
+    links = [each for each in folders if each.is_symlink() and not each.exists()]
+    return f"{links[0]} is a link to what is not there" if links else ""
 
 
 def _require_regular(path: Path, mode: int) -> None:

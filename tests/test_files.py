@@ -197,6 +197,21 @@ def test_a_folder_that_stays_empty_goes_again(folder):
     assert os.listdir(folder / "e") == ["b"]
 
 
+@pytest.mark.parametrize("to", ["nowhere", "link"])
+def test_a_link_to_nothing_is_told_as_one(folder, to):
+    link = folder / "link"
+    link.symlink_to(to)
+    said = f"{link} is a link to what is not there"
+    for path in (link, link / "a" / "b"):
+        with pytest.raises(InputError) as error, files.folder(path, linked=True):
+            pass
+        assert str(error.value) == f"cannot write {path}: {said}"
+    with pytest.raises(InputError) as error:
+        files.replace(link / "x.png", b"")
+    assert str(error.value) == f"cannot write {link / 'x.png'}: {said}"
+    assert link.is_symlink()
+
+
 def test_a_folder_found_by_itself_is_no_link(folder, tmp_path):
     (tmp_path / "elsewhere").mkdir()
     (folder / "link").symlink_to(tmp_path / "elsewhere")
