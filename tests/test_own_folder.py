@@ -167,6 +167,40 @@ def test_a_file_that_can_be_chosen_is(here, cli, name):
     assert cli("show", f"start={name}", "--part", "start.name") == (0, "name: my_start\n", "")
 
 
+@pytest.mark.parametrize(
+    ("kind", "source", "words"),
+    [
+        ("start", "rest", ("run", "start=mine")),
+        ("behaviour", "reference_roll", ("sweep", "behaviour=stand,mine", "--out", "x")),
+        ("motion", "forward_roll",
+         ("run", "behaviour=reference_roll", "behaviour.reference.clip=mine")),
+        ("tune", "ablation", ("tune", "mine", "--out", "x")),
+        ("experiments", "table1", ("sweep", "+experiment=mine", "--out", "x")),
+    ],
+)  # fmt: skip
+def test_a_file_of_another_ending_is_told_and_is_no_choice(here, cli, kind, source, words):
+    cli("new", kind, "mine", "--from", source)
+    written = here / "conf" / kind / "mine.yaml"
+    odd = written.rename(written.with_suffix(".yml"))
+    said = f"{odd} must be called mine.yaml"
+    (line,) = [line for line in cli("list", kind)[1].splitlines() if "mine" in line]
+    assert line.startswith("  mine ")
+    assert line.endswith(f"cannot be used: {said}  [yours: {odd}]")
+    code, _, error = cli(*words)
+    assert (code, error.count("\n")) == (2, 1)
+    assert error.endswith(f"; {said}\n")
+
+
+def test_a_folder_that_nobody_reads_is_told(here, cli):
+    cli("new", "start", "mine", "--from", "rest")
+    (here / "conf" / "start").rename(here / "conf" / "starts")
+    said = (
+        f"{here / 'conf' / 'starts'}: is of no group, so that nobody reads it; did you mean start?"
+    )
+    assert said in cli("list")[1].splitlines()
+    assert said not in cli("list", "terrain")[1]
+
+
 def test_nothing_is_written_that_nobody_could_choose(here, cli):
     cli("new", "start", "my_start", "--from", "rest")
     out = "conf/motion/12.yaml"

@@ -110,6 +110,28 @@ def _files(place: Path) -> dict[str, Path]:
     return {path.stem: path for path in paths if not path.name.startswith(".")}  # editors' locks
 
 
+def misnamed(folder: str) -> dict[str, Path]:
+    """As `named_files`, of the user's that nobody can choose, as they end in `.yml`, say."""
+    mine = own_dir()
+    paths = sorted((mine / folder).glob("*.*")) if mine else []
+    odd = [path for path in paths if path.suffix.lower() in (".yml", ".yaml")]
+    return {path.stem: path for path in odd if path.suffix != ".yaml" and path.stem[0] != "."}
+
+
+def strays() -> dict[str, Path]:
+    """Name -> folder of configs among the user's that is of no group, so that nobody reads it."""
+    mine = own_dir()
+    known = {path.name for path in conf_dir().iterdir()} | {EXPERIMENTS}
+    found = sorted(path.parent for path in mine.glob("*/*.y*ml")) if mine else []
+    return {path.name: path for path in found if path.name not in known and path.name[0] != "."}
+
+
+def instead_of(folder: str, name: object, valid: str) -> str:
+    """For a name that is none: `valid`, or how a file of the user's must be called."""
+    path = misnamed(folder).get(name) if isinstance(name, str) else None
+    return f"{path} must be called {path.stem}.yaml" if path else valid
+
+
 def named_file(folder: str, name: str) -> Path:
     """The file of a name, which may not be there.
 
@@ -174,7 +196,10 @@ def groups() -> dict[str, dict[str, str]]:
 
 def described(folder: str) -> dict[str, str]:
     """Names in a folder of configs to a line of description each, see `groups`; sorted."""
-    return {name: _described(path) for name, path in sorted(named_files(folder).items())}
+    found = {name: _described(path) for name, path in named_files(folder).items()}
+    for name in misnamed(folder).keys() - found.keys():
+        found[name] = f"cannot be used: {instead_of(folder, name, '')}"
+    return dict(sorted(found.items()))
 
 
 def require_plain(chosen: Iterable[tuple[str, str]]) -> None:
@@ -229,7 +254,7 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
             match = _DEFAULT.fullmatch(key)
             valid = choices(match[1]) if match else []
             if not match or name not in valid:
-                hint = meant(name, valid)
+                hint = instead_of(match[1], name, meant(name, valid)) if match else ""
                 raise InputError(
                     f"{path}: defaults: {key}: {name}: no such choice of a group{hint and '; '}"
                     f"{hint.rstrip()}"

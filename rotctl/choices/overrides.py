@@ -13,7 +13,7 @@ from hydra.core.override_parser.types import ChoiceSweep, Glob, Override, Overri
 from hydra.errors import HydraException
 
 from rotctl.choices.composing import MISSING, Assignment
-from rotctl.choices.listing import choices, conf_dir
+from rotctl.choices.listing import choices, conf_dir, instead_of
 from rotctl.errors import InputError
 from rotctl.settings.checking import brief, clip
 from rotctl.suggestion import instead_of_many
@@ -101,7 +101,7 @@ def single(override: str) -> Override:
         raise InputError(f"{shown} changes nothing; give a value, or remove a key with ~key")
     valid = choices(key)
     if valid and not isinstance(value, dict) and value not in valid:
-        near = instead_of_many(value, valid, f"rotctl list {key}")
+        near = instead_of(key, value, instead_of_many(value, valid, f"rotctl list {key}"))
         raise InputError(f"{key}={brief(value)}: no such choice; {near}")
     return found
 

@@ -7,6 +7,7 @@ from rotctl import __version__, files
 from rotctl.choices.listing import (
     MARK,
     groups,
+    instead_of,
     is_shipped,
     named_file,
     named_files,
@@ -45,7 +46,9 @@ def make(kind: str, name: str, source: str) -> Path:
     path, there = free(kind, name), named_files(kind)
     if source not in there:
         what = "start or run" if kind == "start" else kind
-        raise InputError(f"--from={source}: no such {what}; {instead(source, there)}")
+        raise InputError(
+            f"--from={source}: no such {what}; {instead_of(kind, source, instead(source, there))}"
+        )
     text = files.text(named_file(kind, source), documents.LARGEST, linked=True)
     text = _NAME.sub(f"name: {name}", text, count=1)
     copied = f"# Copied from {kind}/{source} of rotctl {__version__}.\n"

@@ -15,7 +15,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl import files
-from rotctl.choices.listing import named_file, named_files
+from rotctl.choices.listing import instead_of, named_file, named_files
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
@@ -105,9 +105,8 @@ def load_clip(name: str) -> Clip:
     if "/" in name or name.endswith(".yaml"):
         return _read(Path(name))
     if name not in names():
-        raise InputError(
-            f"{name}: no such clip; {instead(name, names())}, or the path of a .yaml file"
-        )
+        valid = f"{instead(name, names())}, or the path of a .yaml file"
+        raise InputError(f"{name}: no such clip; {instead_of('motion', name, valid)}")
     return _read(named_file("motion", name))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl import files
-from rotctl.choices.listing import named_file, named_files
+from rotctl.choices.listing import EXPERIMENTS, instead_of, named_file, named_files
 from rotctl.errors import InputError
 from rotctl.metrics.claims import Claim, Where
 from rotctl.settings import checking, documents
@@ -141,5 +141,6 @@ def matrix(overrides: list[str]) -> list[list[str]]:
 def _path(name: str) -> Path:
     valid = names()
     if name not in valid:
-        raise InputError(f"{PREFIX}{name}: no such experiment; {instead(name, valid)}")
+        near = instead_of(EXPERIMENTS, name, instead(name, valid))
+        raise InputError(f"{PREFIX}{name}: no such experiment; {near}")
     return named_file("experiments", name)

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.choices.listing import named_file, named_files
+from rotctl.choices.listing import instead_of, named_file, named_files
 from rotctl.errors import InputError
 from rotctl.metrics import appearance, pace
 from rotctl.metrics.criteria import rolling
@@ -275,9 +275,8 @@ def load_space(name: str) -> Space:
         InputError: one line that names the file, the bad value and what is valid.
     """
     if not name.endswith(".yaml") and name not in names():
-        raise InputError(
-            f"{name}: no such space; {instead(name, names())}, or the path of a .yaml file"
-        )
+        valid = f"{instead(name, names())}, or the path of a .yaml file"
+        raise InputError(f"{name}: no such space; {instead_of('tune', name, valid)}")
     path = Path(name) if name.endswith(".yaml") else named_file("tune", name)
     data = documents.read_yaml(path, linked=True)
     if isinstance(data, dict) and "parameters" in data:

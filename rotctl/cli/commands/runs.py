@@ -158,9 +158,9 @@ def add_list(commands: Commands) -> None:
 
 def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
-    from rotctl.choices.listing import EXPERIMENTS, described, groups
+    from rotctl.choices.listing import EXPERIMENTS, described, groups, strays
     from rotctl.settings.checking import brief
-    from rotctl.suggestion import instead
+    from rotctl.suggestion import instead, meant
 
     titles = {
         "catch": "catch (+catch=NAME)",
@@ -180,15 +180,18 @@ def list_choices(arguments: argparse.Namespace) -> int:
         if choices:
             print(titles.get(folder, folder))
             _print_choices(folder, choices)
+    for name, path in strays().items() if arguments.group is None else ():
+        near = meant(name, listed)
+        print(f"{path}: is of no group, so that nobody reads it{near and '; '}{near.rstrip()}")
     print("\nchoose with GROUP=CHOICE, change a value with KEY=VALUE; see: rotctl show")
     return 0
 
 
 def _print_choices(folder: str, choices: Mapping[str, str]) -> None:
-    from rotctl.choices.listing import is_own, named_files
+    from rotctl.choices.listing import is_own, misnamed, named_files
 
     width = max(map(len, choices))
-    places = named_files(folder)
+    places = misnamed(folder) | named_files(folder)
     for choice, description in choices.items():
         mine = f"  [yours: {places[choice]}]" if is_own(places[choice]) else ""
         print(f"  {choice:{width}}  {description}{mine}".rstrip())
