@@ -16,6 +16,7 @@ from rotctl.log import RunLog
 from rotctl.runs import repetition as verifying
 from rotctl.runs.repetition import repeat
 from rotctl.runs.run import make
+from rotctl.runs.scenario import build
 from rotctl.runs.summary import judged_again
 
 ROWS = 30
@@ -326,3 +327,21 @@ def test_what_is_refused_of_a_new_run_is_repeated_and_judged_of_an_older_one(
     assert judged_again(older, recorded(older))["behaviour"] == "forward_roll"
     arguments = ["run", "--again", str(older.path), "--out", str(tmp_path / "out")]
     assert (main(arguments), capsys.readouterr().err) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("overrides", "brings", "key"),
+    [
+        ("behaviour=forward_roll", {"pace": {"easing": 0.1}}, "behaviour.pace.easing"),
+        ("excursion=root", {"correction_time": 0.1}, "excursion.correction_time"),
+    ],
+)
+def test_a_choice_that_brings_other_numbers_by_now_leaves_its_older_logs_in_peace(
+    tmp_path, monkeypatch, overrides, brings, key
+):
+    """Of a new run a number that acts on nothing is refused, unless the choice has it."""
+    older = logged(tmp_path, overrides, "duration=0.1")
+    monkeypatch.setattr("rotctl.config.sense.brought", lambda group, name: brings)
+    with pytest.raises(InputError, match=f"{key}=.*: acts on nothing"):
+        build(recorded(older))
+    assert repeat(older).same

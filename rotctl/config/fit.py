@@ -7,19 +7,16 @@ from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.placing import Watch
 from rotctl.behaviours.staged.settings import StagedSettings
-from rotctl.choices.brought import brought
 from rotctl.choices.listing import content, shipped_files
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.disturbance import Calm
-from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
-from rotctl.settings.checking import brief
 from rotctl.settings.fields import Vector, ends
 
 ROUNDING = 1e-9  # [s]
@@ -33,8 +30,6 @@ def require_fit(config: Config, model: Model) -> None:
     """
     behaviour = config.behaviour
     _require_judged(behaviour, config.criteria, model)
-    _require_pulled(behaviour, config.excursion)
-    _require_halts(behaviour)
     if not isinstance(config.criteria, OrientationCriteria):
         _require_weight(behaviour, config.physics.gravity)
     if config.plant.predicted and isinstance(config.physics, LockstepPhysics):
@@ -55,42 +50,6 @@ def require_fit(config: Config, model: Model) -> None:
         raise InputError(
             f"controller.sees_disturbance is about forces, and disturbance={outside.name} has "
             "none: control goes on with the model that it knows"
-        )
-
-
-def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:
-    """A pull that is told acts on something; what every measure has of it is not told."""
-    lacking: dict[str, str] = {}
-    if measured.measure in ("integral", "root"):
-        lacking["correction_time"] = f"measure={measured.measure} has no pull"
-    elif not behaviour.by_excursion:
-        lacking["correction_time"] = f"no task of behaviour={behaviour.name} turns or holds"
-    if measured.measure == "clock":
-        lacking["phase_time"] = "with measure=clock the phase goes by time"
-    for key, why in lacking.items():
-        told, usual = getattr(measured, key), brought("excursion", "oriented")[key]
-        if told != usual:
-            raise InputError(
-                f"excursion.{key}={told:g}: acts on nothing, as {why}; leave it at {usual:g}"
-            )
-
-
-def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None:
-    """How a halt brakes is told where there is one; what a behaviour brings along is not told.
-
-    One that does not come with rotctl brings what it has: its file may be anywhere, or edited.
-    """
-    if isinstance(behaviour, ChainSettings):
-        for number, part in enumerate(behaviour.parts):
-            _require_halts(part.behaviour, f"{part.place(number)}: behaviour")
-    if not isinstance(behaviour, RollingSettings) or behaviour.pace is None or behaviour.halts:
-        return
-    told, whole = behaviour.pace.easing, brought("behaviour", behaviour.name)
-    usual = (whole.get("pace") or {}).get("easing") if whole else told
-    if told not in (None, usual):
-        raise InputError(
-            f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
-            f"which is a 0 in pace.schedule; leave it at {brief(usual)}"
         )
 
 

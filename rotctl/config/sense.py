@@ -8,6 +8,7 @@ from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.changes import Slip
 from rotctl.mechanics.character import Character
+from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
 from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
@@ -26,7 +27,7 @@ def require_sense(config: Config) -> None:
 
     Raises:
         InputError: a finish comes too late, the ground may be drawn as none can be, or what is
-            said of a contact acts on nothing.
+            said of a contact, a pull or a halt acts on nothing.
     """
     _require_ground(config)
     if not isinstance(config.physics, LockstepPhysics):
@@ -34,6 +35,8 @@ def require_sense(config: Config) -> None:
         _require_slow(config.character, config.physics, config.controller.rate)
     else:
         _require_hard(config.character, config.physics)
+    _require_pulled(config.behaviour, config.excursion)
+    _require_halts(config.behaviour)
     _require_end(config.behaviour, config.duration)
 
 
@@ -105,6 +108,42 @@ def _require_hard(character: Character, physics: LockstepPhysics) -> None:
                 f"character.flesh.{key}={brief(value)}: acts on nothing, as contacts of "
                 f"physics={physics.name} are hard; leave flesh as character={character.name} has it"
             )
+
+
+def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:
+    """A pull that is told acts on something; what every measure has of it is not told."""
+    lacking: dict[str, str] = {}
+    if measured.measure in ("integral", "root"):
+        lacking["correction_time"] = f"measure={measured.measure} has no pull"
+    elif not behaviour.by_excursion:
+        lacking["correction_time"] = f"no task of behaviour={behaviour.name} turns or holds"
+    if measured.measure == "clock":
+        lacking["phase_time"] = "with measure=clock the phase goes by time"
+    for key, why in lacking.items():
+        told, usual = getattr(measured, key), brought("excursion", "oriented")[key]
+        if told != usual:
+            raise InputError(
+                f"excursion.{key}={told:g}: acts on nothing, as {why}; leave it at {usual:g}"
+            )
+
+
+def _require_halts(behaviour: BehaviourSettings, key: str = "behaviour") -> None:
+    """How a halt brakes is told where there is one; what a behaviour brings along is not told.
+
+    One that does not come with rotctl brings what it has: its file may be anywhere, or edited.
+    """
+    if isinstance(behaviour, ChainSettings):
+        for number, part in enumerate(behaviour.parts):
+            _require_halts(part.behaviour, f"{part.place(number)}: behaviour")
+    if not isinstance(behaviour, RollingSettings) or behaviour.pace is None or behaviour.halts:
+        return
+    told, whole = behaviour.pace.easing, brought("behaviour", behaviour.name)
+    usual = (whole.get("pace") or {}).get("easing") if whole else told
+    if told not in (None, usual):
+        raise InputError(
+            f"{key}.pace.easing={brief(told)}: acts on nothing, as nothing tells it to halt, "
+            f"which is a 0 in pace.schedule; leave it at {brief(usual)}"
+        )
 
 
 def _require_end(behaviour: BehaviourSettings, duration: float, key: str = "behaviour") -> None:
