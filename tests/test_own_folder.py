@@ -358,6 +358,7 @@ def test_sweeps_are_compared(here, cli):
     assert said.splitlines()[1].split() == ["controller.pose.weight", "0.6", "0.7"]
     assert "seed" not in said.partition("figures")[0]
     assert "torque_p99_fraction" in said.partition("figures")[2]
+    assert "real_time_factor" not in said  # no two runs take the same
 
 
 def test_of_sweeps_over_several_behaviours_their_names_are_compared(here, cli):

@@ -71,7 +71,9 @@ def _side(path: Path) -> Side:
     keys = [str(key) for key in row]
     rates = [key for key in keys if key.endswith("_rate") and row[key] == row[key]]
     measured = [key.removesuffix("_median") for key in keys if key.endswith("_median")]
-    measured = [name for name in measured if f"{name}_rate" not in keys]
+    measured = [
+        name for name in measured if f"{name}_rate" not in keys and name not in _NOT_FIGURES
+    ]
     figures: dict[str, Any] = {"runs": row["n"]} | {key: row[key] for key in rates}
     spreads = {name: tuple(row[f"{name}{part}"] for part in _SPREAD) for name in measured}
     figures |= {name: spread for name, spread in spreads.items() if spread[1] == spread[1]}

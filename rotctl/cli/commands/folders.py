@@ -160,7 +160,9 @@ def add_diff(commands: Commands) -> None:
         description="Compare two logs, or two folders of runs: the config's values that differ, "
         "and the figures (of a folder median and quartiles).",
     )
-    command.add_argument("one", type=path_name, metavar="A", help="RUN.h5, or a folder")
+    command.add_argument(
+        "one", type=path_name, metavar="A", help=f"{LOG_HELP}, or a folder of runs"
+    )
     command.add_argument("other", type=path_name, metavar="B")
     command.set_defaults(command=diff)
 
