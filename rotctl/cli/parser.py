@@ -18,7 +18,7 @@ examples:
   rotctl run                                      Forward Roll 1, 20 s, into runs/<run id>/
   rotctl run seed=3 duration=5 --filmstrip        another start, a picture of it
   rotctl run behaviour=back_flip duration=6       a flip; rotctl list behaviour has the others
-  rotctl run controller.pose.weight=0.5
+  rotctl run controller.pose.weight=1             another weight
   rotctl sweep 'seed=range(0,50)' --out sweeps/a  fifty starts; the same again resumes
   rotctl judge sweeps/a criteria.stall_time=2     verdicts by other criteria, nothing simulated
   rotctl judge sweeps/a --metric "top=max(com[:,2])"  a column of your own
