@@ -132,6 +132,16 @@ def test_longest_stall(progress, expected):
     assert found == pytest.approx((0.5 * expected[0], 0.5 * expected[1]))
 
 
+def test_from_between_two_marks_a_stall_is_less_than_twice_as_long():
+    generator = np.random.default_rng(0)
+    for _ in range(50):
+        progress = np.cumsum(np.abs(generator.normal(0.0, 0.03, 200)))
+        told = longest_stall(progress, 0.1, 1.0)[0]
+        ahead = np.searchsorted(progress, progress + 0.1)  # rises all the while
+        longest = int((np.minimum(ahead, 199) - np.arange(200)).max())
+        assert told <= longest < 2 * told
+
+
 @pytest.mark.parametrize(
     ("progress", "expected"),
     [([0.0], 0.0), ([0, 1, 2], 0.0), ([0, 1, 0.5, 2, 1.25, 3], 0.75), ([0, -2, 5], 2.0)],

@@ -10,7 +10,8 @@ def longest_stall(progress: Array, least: float, period: float) -> tuple[float, 
     """Longest time [s] in which `progress` (n,) grew by less than `least`, and its start [s].
 
     A stall begins when progress last exceeded its previous mark by `least`, and lasts until
-    it does so again, or the run ends.
+    it does so again, or the run ends. From between two marks so much may take longer, less than
+    twice as long.
     """
     values = progress.tolist()  # plain numbers, which are compared in a fifth of the time
     mark, since = values[0], 0
