@@ -6,7 +6,8 @@ import shutil
 import pytest
 
 from rotctl.choices import listing
-from rotctl.choices.listing import conf_dir, groups
+from rotctl.choices.describing import groups
+from rotctl.choices.listing import conf_dir
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError

@@ -12,7 +12,8 @@ import yaml
 
 from rotctl.choices import composing, listing
 from rotctl.choices.composing import simple
-from rotctl.choices.listing import conf_dir, groups
+from rotctl.choices.describing import groups
+from rotctl.choices.listing import conf_dir
 from rotctl.choices.overrides import single
 from rotctl.config.loading import _by_hydra as by_hydra
 from rotctl.config.loading import composed, load

@@ -3,7 +3,8 @@
 import pytest
 
 from rotctl.choices import listing
-from rotctl.choices.listing import choices, conf_dir, groups
+from rotctl.choices.describing import groups
+from rotctl.choices.listing import choices, conf_dir
 from rotctl.errors import InputError
 
 

@@ -225,7 +225,7 @@ def test_every_kind_can_be_begun(here):
         assert load_space("my_own")
         assert experiments.experiment("my_own").title
         assert named_file("motion", "my_own") == here / "conf" / "motion" / "my_own.yaml"
-        for group in listing.groups():
+        for group in listing.group_names():
             assert "my_own" in listing.choices(group)
 
 

@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rotctl import files
 from rotctl.errors import InputError
 from rotctl.settings import documents, plain
 from rotctl.suggestion import meant
@@ -21,7 +20,6 @@ OWN = "ROTCTL_CONFIG_DIR"
 EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl
 MARK = "rotctl.yaml"  # in a folder of configs that is the user's
 _NO_GROUPS = {"motion", "tune", EXPERIMENTS}  # folders of conf/ that no config is composed from
-_NAMED_ALONE = {"tune", EXPERIMENTS}  # by no value of Hydra's
 MOST_VALUES = 20_000  # of a file; Hydra takes seconds for as many
 _CHOICE = re.compile(r"\w([\w. -]*[\w.-])?", re.ASCII)  # what Hydra reads as one value
 _NUMBER = re.compile(r"[\d_.]+(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
@@ -118,14 +116,6 @@ def misnamed(folder: str) -> dict[str, Path]:
     return {path.stem: path for path in odd if path.suffix != ".yaml" and path.stem[0] != "."}
 
 
-def strays() -> dict[str, Path]:
-    """Name -> folder of configs among the user's that is of no group, so that nobody reads it."""
-    mine = own_dir()
-    known = {path.name for path in conf_dir().iterdir()} | {EXPERIMENTS}
-    found = sorted(path.parent for path in mine.glob("*/*.y*ml")) if mine else []
-    return {path.name: path for path in found if path.name not in known and path.name[0] != "."}
-
-
 def instead_of(folder: str, name: object, valid: str) -> str:
     """For a name that is none: `valid`, or how a file of the user's must be called."""
     path = misnamed(folder).get(name) if isinstance(name, str) else None
@@ -182,24 +172,9 @@ def choices(group: str) -> list[str]:
     return sorted(name for name in named_files(group) if not unfit(name))
 
 
-def groups() -> dict[str, dict[str, str]]:
-    """Config groups to their choices to a line of description each, sorted.
-
-    The line is the file's `description`, or else the comment that the file opens with; or what
-    is wrong with the file.
-    """
-    found: dict[str, dict[str, str]] = {}
-    for group in sorted({path.parent.name for path in conf_dir().glob("*/*.yaml")} - _NO_GROUPS):
-        found[group] = described(group)
-    return found
-
-
-def described(folder: str) -> dict[str, str]:
-    """Names in a folder of configs to a line of description each, see `groups`; sorted."""
-    found = {name: _described(path) for name, path in named_files(folder).items()}
-    for name in misnamed(folder).keys() - found.keys():
-        found[name] = f"cannot be used: {instead_of(folder, name, '')}"
-    return dict(sorted(found.items()))
+def group_names() -> list[str]:
+    """The config groups, sorted."""
+    return sorted({path.parent.name for path in conf_dir().glob("*/*.yaml")} - _NO_GROUPS)
 
 
 def require_plain(chosen: Iterable[tuple[str, str]]) -> None:
@@ -261,29 +236,3 @@ def _defaults(path: Path) -> list[tuple[str, str]]:
                 )
             pairs.append((match[1], name))
     return pairs
-
-
-def _described(path: Path) -> str:
-    try:
-        named_file(path.parent.name, path.stem)  # of which there must be one
-        wrong = unfit(path.stem) if path.parent.name not in _NAMED_ALONE else ""
-        if wrong:
-            raise InputError(f"{wrong}; give it another name")
-        data = content(path)
-        text = files.text(path, documents.LARGEST, linked=True)
-        told = data.get("description") or _first_comment(text) or data.get("file", "")  # a model
-        called = data.get("name", path.stem)
-        told = f"{told} (its runs say {called})" if called != path.stem else told
-        return " ".join(str(told).split())
-    except InputError as error:
-        return f"cannot be used: {error}"
-
-
-def _first_comment(text: str) -> str:
-    """The first line of the comment that a file opens with, less Hydra's own `@package`."""
-    for line in text.splitlines():
-        if not line.startswith("#"):
-            break
-        if not line.startswith("# @"):
-            return line.removeprefix("#").strip()
-    return ""

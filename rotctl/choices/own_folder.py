@@ -6,7 +6,7 @@ from pathlib import Path
 from rotctl import __version__, files
 from rotctl.choices.listing import (
     MARK,
-    groups,
+    group_names,
     instead_of,
     is_shipped,
     named_file,
@@ -30,7 +30,7 @@ _NAME = re.compile(r"^name: .*$", re.MULTILINE)
 
 def kinds() -> list[str]:
     """The folders that a file of one's own may be in."""
-    return [*groups(), *_NO_GROUPS]
+    return [*group_names(), *_NO_GROUPS]
 
 
 def make(kind: str, name: str, source: str) -> Path:

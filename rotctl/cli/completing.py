@@ -76,7 +76,7 @@ def _in_command(
         return [text for a in command._actions for text in a.option_strings]
     given = [w for w in before[before.index(name) + 1 :] if "=" not in w and not w.startswith("-")]
     if name in ("new", "list") and not given:
-        return [*listing.groups(), "motion", "tune", listing.EXPERIMENTS]
+        return [*listing.group_names(), "motion", "tune", listing.EXPERIMENTS]
     if name == "tune" and not given:
         return listing.named_files("tune")
     positional = [a for a in command._actions if not a.option_strings]

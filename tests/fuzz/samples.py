@@ -60,7 +60,7 @@ def make(folder, whole=True):
     swept(folder / "staged", *pushed, "duration=0.1")
     for log in folder.rglob("run.h5"):
         _without_clock(log)
-    behaviours = listing.groups()["behaviour"] if whole else ("forward_roll_1", "turn_over")
+    behaviours = listing.choices("behaviour") if whole else ("forward_roll_1", "turn_over")
     chosen = [[f"behaviour={name}"] for name in behaviours]
     more = ("disturbance=push", "disturbance=wind", "plant=randomised") if whole else ()
     chosen += [[*chosen[0], word] for word in more]

@@ -52,7 +52,7 @@ def capture(rng, samples, here):
 
 def conf(rng, samples, here):
     shutil.copytree(listing.conf_dir(), here / "conf")
-    groups = [here / "conf", *(here / "conf" / name for name in listing.groups())]
+    groups = [here / "conf", *(here / "conf" / name for name in listing.group_names())]
     path = rng.choice(sorted(rng.choice(groups).glob("*.yaml")))
     _text_file(rng, path, path.read_text(), here)
     command = ["list"]

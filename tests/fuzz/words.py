@@ -25,7 +25,7 @@ SWEEPS = ("range(0,3)", "range(0,1e9)", "1,2", "glob(*)", "choice(a,b)", "{a: 1}
 
 
 def _override(rng, keys, values):
-    key = rng.choice((*keys, *keys, *listing.groups(), text(rng)))
+    key = rng.choice((*keys, *keys, *listing.group_names(), text(rng)))
     if rng.random() < 0.2:
         at = rng.randrange(len(key) + 1)
         key = key[:at] + rng.choice((".", "@", "/", "[0]", text(rng)[:300], "x")) + key[at:]

@@ -158,7 +158,8 @@ def add_list(commands: Commands) -> None:
 
 def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
-    from rotctl.choices.listing import EXPERIMENTS, described, groups, strays
+    from rotctl.choices.describing import described, groups, strays
+    from rotctl.choices.listing import EXPERIMENTS
     from rotctl.settings.checking import brief
     from rotctl.suggestion import instead, meant
 
