@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 from typing import Any, NoReturn
 
 from rotctl import __version__
-from rotctl.cli.commands import clips, completion, folders, logs, runs, searches, studies
+from rotctl.cli.commands import clips, completion, configs, folders, logs, runs, searches, studies
 from rotctl.cli.wording import one_line
 from rotctl.errors import bounded
 from rotctl.suggestion import instead, meant
@@ -47,8 +47,8 @@ repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad in
 COMMANDS = (
     *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
     *(
-        runs.add_list,
-        runs.add_show,
+        configs.add_list,
+        configs.add_show,
         folders.add_new,
         folders.add_inspect_model,
         folders.add_ls,
