@@ -9,8 +9,10 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+import mujoco
 import pytest
 import yaml
+from logs import changed
 from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
@@ -71,6 +73,16 @@ def test_a_second_identical_run_is_reported_and_force_redoes_it(cli, tmp_path):
     code, stdout, stderr = cli(*RUN, "--out", out, "--json", "--force")
     assert (code, stderr) == (0, "")
     assert log.stat().st_mtime_ns > before
+
+
+def test_whose_run_is_there_already_is_told_where_other_code_has_made_it(cli, tmp_path):
+    cli(*RUN, "--out", tmp_path, "--quiet")
+    (log,) = tmp_path.glob("*/run.h5")
+    older = changed(RunLog.open(log), tmp_path, git_commit="0123456789" * 4, git_dirty=False)
+    os.replace(older.path, log)
+    made_by = f"made by rotctl {__version__} (0123456), mujoco {mujoco.__version__}"
+    told = f"already there, {made_by}, not redone (--force redoes it): {log.parent}\n"
+    assert cli(*RUN, "--out", tmp_path)[::2] == (0, told)
 
 
 def test_quiet_prints_nothing(cli, made, tmp_path):

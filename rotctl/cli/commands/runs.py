@@ -90,7 +90,8 @@ def run(arguments: argparse.Namespace) -> int:
     begins = f"{config.behaviour.name} {first}" if stage else ""
     notices = [result.notice, begins]
     if result.already_there:
-        notices.append(f"already there, not redone (--force redoes it): {result.folder}")
+        by = _made_by(result.folder / LOG_NAME)
+        notices.append(f"already there{by}, not redone (--force redoes it): {result.folder}")
     if result.replaced:
         notices.append(f"simulated again, the log there could not be used: {result.replaced}")
     other = row is not None and result.trajectory != row.trajectory
@@ -114,6 +115,15 @@ def run(arguments: argparse.Namespace) -> int:
         made_by = f"run {row.run_id}, made by {code_of(row.origin)}"
         print(f"rotctl: other bits than in the sweep: {one_line(made_by)}", file=sys.stderr)
     return 1 if result.broke_down or other else 0
+
+
+def _made_by(log: Path) -> str:
+    """Which code has made a log, if it is another than this one."""
+    from rotctl.log import collect, read_attributes
+    from rotctl.results.code import code_of
+
+    there, here = code_of(read_attributes(log, linked=False)), code_of(collect())
+    return "" if there == here else f", made by {there}"
 
 
 def _row_at(path: Path) -> "Row | None":
