@@ -48,7 +48,8 @@ def test_an_unknown_joint_is_named():
 
 
 def test_limbs_are_ready_before_it_is_braked_and_leave_when_it_does():
-    settings = replace(load(["behaviour=decline"]).behaviour.pace, leave=0.2)
+    given = load(["behaviour=decline"]).behaviour.pace
+    settings = replace(given, width=0.45, approach=0.15, leave=0.2)
     pace, wait = Pace(settings, 0.4, 1.0), settings.wait
 
     def at(turn, late=-0.25):
@@ -63,7 +64,7 @@ def test_limbs_are_ready_before_it_is_braked_and_leave_when_it_does():
 
 def test_who_is_stopped_short_of_its_wait_takes_the_pose_late_or_not():
     """By how much slower it turns than the motion by itself, and no further off than `approach`."""
-    settings = load(["behaviour=decline"]).behaviour.pace
+    settings = replace(load(["behaviour=decline"]).behaviour.pace, approach=0.16)
     pace, own = Pace(settings, 0.4, 1.0), settings.own
 
     def waits(turn, turns):
