@@ -2,8 +2,8 @@
 # A TRC file of 25 frames a second has 20 to nimblephysics, and 60 if it is short; the same recording as C3D has 25.
 #
 # Expected: framesPerSecond of a TRC file is what its header gives as DataRate, or the inverse of the time between two rows, which agree here.
-# Happens: it is the count of frames over the time from the first to the last, one interval too few, as a whole number of tens, which the
-#   documentation does not tell. Of 2000 frames 15 a second become 10, 24 and 25 become 20, 85 become 80, 128 become 130; 6 frames at 50 are 60
+# Happens: it is the count of frames over the time from the first to the last, one interval too few, as a whole number of tens, which its
+#   docstring does not tell. Of 2000 frames 15 a second become 10, 24 and 25 become 20, 85 become 80, 128 become 130; 6 frames at 50 are 60
 #   a second, and at 120 are 140. Time stamps are right, to the digits in the file. loadC3D tells 25 and 85, and 148 of 148.5.
 # Seen with: nimblephysics 0.10.52.1, its compiled half alone (OpenSimParser.loadTRC, C3DLoader.loadC3D), ezc3d 1.7.2 to write C3D. The usual 60, 100
 #   and 120 come out right once a file has some 50 frames, which hides it.
