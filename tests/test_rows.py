@@ -80,7 +80,7 @@ def test_who_rolls_backward_pushes_himself_up_over_the_hands(row):
 
 
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])
-def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(physics):
+def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_loins(physics):
     buffer, _, _ = rolled("behaviour=forward_roll_3", f"physics={physics}", "seed=2000")
     model = build(load(["behaviour=forward_roll_3"])).model.mj
     up = buffer.contacts.force_realised[..., 2].astype(float)
@@ -94,8 +94,8 @@ def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_hip(p
         aside = ((buffer.contacts.position - middle[:, None]) * left).sum(axis=2)
         return float((on(name) * (aside > 0.0)).sum() / on(name).sum())
 
-    assert to_the_left("chest") < 0.5  # of five starts at most 0.43
-    assert to_the_left("pelvis") > to_the_left("chest") + 0.2  # at least 0.39
+    assert to_the_left("chest") < 0.5  # of five starts at most 0.42
+    assert to_the_left("waist") > to_the_left("chest") + 0.1  # at least 0.19; in lockstep half
     assert on("head").sum() / up.sum() < 0.03
     assert on("forearm_r").sum() / up.sum() > 0.03
     seen = appearance.measure(buffer.arrays(), model, 1.5, 1.0 / 60.0)
