@@ -244,7 +244,7 @@ def _make(path: Path, linked: bool) -> None:
 
 def _dangling(folders: Iterable[Path]) -> str:
     """Which of them is a link to nothing, of which the system says that it exists, or does not."""
-    links = [each for each in folders if each.is_symlink() and not each.exists()]
+    links = [each for each in folders if os.path.islink(each) and not os.path.exists(each)]
     return f"{links[0]} is a link to what is not there" if links else ""
 
 

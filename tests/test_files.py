@@ -197,6 +197,14 @@ def test_a_folder_that_stays_empty_goes_again(folder):
     assert os.listdir(folder / "e") == ["b"]
 
 
+def test_a_name_that_no_folder_may_have_is_told_with_its_reason(folder):
+    path = folder / ("x" * 300) / "a"
+    for write in (lambda: files.replace(path, b""), lambda: files.folder(path, linked=True).__enter__()):
+        with pytest.raises(InputError) as error:
+            write()
+        assert str(error.value) == f"cannot write {path}: File name too long"
+
+
 @pytest.mark.parametrize("to", ["nowhere", "link"])
 def test_a_link_to_nothing_is_told_as_one(folder, to):
     link = folder / "link"
