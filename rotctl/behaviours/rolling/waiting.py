@@ -1,7 +1,7 @@
 """The pose of a roll that waits for its clock.
 
 What leads a body that turns has, for one that stands still, come too far: it leans onto its hands
-with its head down. Who waits has a pose of its own: a squat, the hands down or near it, the head up.
+with its head down. Who waits has a pose of its own: a squat, hands at or near the ground, head up.
 """
 
 from collections.abc import Mapping
