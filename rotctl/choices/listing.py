@@ -19,7 +19,7 @@ from rotctl.suggestion import meant
 OWN = "ROTCTL_CONFIG_DIR"
 EXPERIMENTS = "experiments"  # beside conf/, where it comes with rotctl
 MARK = "rotctl.yaml"  # in a folder of configs that is the user's
-_NO_GROUPS = {"motion", "tune", EXPERIMENTS}  # folders of conf/ that no config is composed from
+NO_GROUPS = ("motion", "tune", EXPERIMENTS)  # folders of conf/ that no config is composed from
 MOST_VALUES = 20_000  # of a file; Hydra takes seconds for as many
 _CHOICE = re.compile(r"\w([\w. -]*[\w.-])?", re.ASCII)  # what Hydra reads as one value
 _NUMBER = re.compile(r"[\d_.]+(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
@@ -166,7 +166,7 @@ def choices(group: str) -> list[str]:
         group: also as it is written to add a choice to a config, `+finish`.
     """
     group = group.removeprefix("+")
-    known = group.isidentifier() and group not in _NO_GROUPS
+    known = group.isidentifier() and group not in NO_GROUPS
     if not known or not os.path.isdir(conf_dir() / group):  # of a name of any length
         return []
     return sorted(name for name in named_files(group) if not unfit(name))
@@ -174,7 +174,7 @@ def choices(group: str) -> list[str]:
 
 def group_names() -> list[str]:
     """The config groups, sorted."""
-    return sorted({path.parent.name for path in conf_dir().glob("*/*.yaml")} - _NO_GROUPS)
+    return sorted({path.parent.name for path in conf_dir().glob("*/*.yaml")}.difference(NO_GROUPS))
 
 
 def require_plain(chosen: Iterable[tuple[str, str]]) -> None:

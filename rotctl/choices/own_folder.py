@@ -6,6 +6,7 @@ from pathlib import Path
 from rotctl import __version__, files
 from rotctl.choices.listing import (
     MARK,
+    NO_GROUPS,
     group_names,
     instead_of,
     is_shipped,
@@ -24,13 +25,12 @@ MARKED = """\
 # search spaces in tune/, experiments in experiments/. rotctl takes this folder, ./conf, by itself
 # because this file is in it, and any other by --config-dir. Nothing in it is executed.
 """
-_NO_GROUPS = ("motion", "tune", "experiments")
 _NAME = re.compile(r"^name: .*$", re.MULTILINE)
 
 
 def kinds() -> list[str]:
     """The folders that a file of one's own may be in."""
-    return [*group_names(), *_NO_GROUPS]
+    return [*group_names(), *NO_GROUPS]
 
 
 def make(kind: str, name: str, source: str) -> Path:

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 
 from rotctl.errors import InputError
+from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.character import Body, Character, Geom, Joint
 from rotctl.mechanics.terrain import CHARACTER_CONTACT, GROUND_CONTACT
 from rotctl.settings.fields import Vector
@@ -24,7 +25,7 @@ def add_character(spec: mujoco.MjSpec, character: Character) -> None:
     geoms: dict[str, list[tuple[str, str]]] = {}
     torque: dict[str, float] = {}
     for body in character.bodies:
-        for side in ("_l", "_r") if body.mirror else ("",):
+        for side in SIDES if body.mirror else ("",):
             made = _add_body(spec, character, body, side, built)
             for joint in body.joints:
                 _add_joint(made, character, joint, side)
@@ -47,7 +48,7 @@ def add_character(spec: mujoco.MjSpec, character: Character) -> None:
                 )
         for side_a, geom_a in geoms[first]:
             for side_b, geom_b in geoms[second]:
-                if first != second or (side_a, side_b) == ("_l", "_r"):
+                if first != second or (side_a, side_b) == SIDES:
                     spec.add_pair(geomname1=geom_a, geomname2=geom_b, condim=1)
 
 

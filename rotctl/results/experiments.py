@@ -71,7 +71,7 @@ def _key(override: str) -> str:
 
 def names() -> list[str]:
     """The experiments there are, sorted."""
-    return sorted(named_files("experiments"))
+    return sorted(named_files(EXPERIMENTS))
 
 
 def experiment(name: str) -> Experiment:
@@ -143,4 +143,4 @@ def _path(name: str) -> Path:
     if name not in valid:
         near = instead_of(EXPERIMENTS, name, instead(name, valid))
         raise InputError(f"{PREFIX}{name}: no such experiment; {near}")
-    return named_file("experiments", name)
+    return named_file(EXPERIMENTS, name)
