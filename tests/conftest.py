@@ -7,6 +7,7 @@ import zlib
 from dataclasses import dataclass, replace
 from itertools import islice
 
+import headless  # noqa: F401, before mujoco
 import mujoco
 import numpy as np
 import pytest

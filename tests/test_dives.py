@@ -32,6 +32,19 @@ def placed(scenario, log, row):
     return data
 
 
+def ends(scenario, log, row):
+    """The middles of the hands and of the feet, the crown and the pelvis in a row, world [m]."""
+    mj, data = scenario.model.mj, placed(scenario, log, row)
+
+    def middle(point, *names):
+        at = [mj.body(name).id for name in names]
+        return np.mean([data.xpos[i] + data.xmat[i].reshape(3, 3) @ point for i in at], axis=0)
+
+    hands = middle([0.0, 0.0, -0.3], "forearm_l", "forearm_r")
+    feet = middle(np.zeros(3), "foot_l", "foot_r")
+    return hands, feet, middle([0.0, 0.0, 0.17], "head"), middle(np.zeros(3), "pelvis")
+
+
 def test_it_enters_head_first_and_straight(back):
     scenario, log = back
     columns, reason = dive.judge(log, scenario.config.criteria, -540.0, PERIOD)
@@ -43,16 +56,7 @@ def test_the_entry_is_when_and_how_the_body_is_there(back):
     """By kinematics of the logged state: hands at the water, and the line to them."""
     scenario, log = back
     row = dive.entry(log)
-    mj, data = scenario.model.mj, placed(scenario, log, row)
-    hands = np.mean(
-        [
-            data.xpos[mj.body(f"forearm_{s}").id]
-            + data.xmat[mj.body(f"forearm_{s}").id].reshape(3, 3) @ [0.0, 0.0, -0.3]
-            for s in "lr"
-        ],
-        axis=0,
-    )
-    feet = np.mean([data.xpos[mj.body(f"foot_{s}").id] for s in "lr"], axis=0)
+    hands, feet, _, _ = ends(scenario, log, row)
     line = hands - feet
     angle = np.degrees(np.arccos(-line[2] / np.linalg.norm(line)))
     found = dive.measure(log, scenario.config.criteria, -540.0, PERIOD)
@@ -69,6 +73,21 @@ def test_nothing_of_it_touches_the_platform_once_it_has_left(back):
     assert first < dive.entry(log)
 
 
+def test_the_clearance_is_how_near_it_comes_to_where_it_last_stood(back):
+    """By kinematics of the logged states, from the highest one on; backward is along x here."""
+    scenario, log = back
+    first, row = dive.longest_flight(log)[0], dive.entry(log)
+    stood = log["contacts/position"][first - 1][log["contacts/body"][first - 1] >= 0]
+    toes, floor = stood[:, 0].max(), stood[0, 2]
+    top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
+    near = np.inf
+    for each in range(top, row):
+        for place in ends(scenario, log, each):
+            beyond, over = max(place[0] - toes, 0.0), max(place[2] - floor, 0.0)
+            near = min(near, np.hypot(beyond, over))
+    assert dive._clearance(log, row, -1.0) == pytest.approx(near, abs=1e-3)
+
+
 def test_who_never_enters_has_no_numbers(back):
     scenario, log = back
     stays = {**log, "command/stage": np.zeros_like(log["command/stage"])}
@@ -83,7 +102,7 @@ def test_each_limit_has_its_reason(back):
     for limits, words in (
         ({"angle": 1e-6}, "off the vertical"),
         ({"bent": 1e-6}, "with a joint bent"),
-        ({"clearance": 5.0}, "of the platform"),
+        ({"clearance": 5.0}, "of where it last stood"),
     ):
         assert words in dive.judge(log, replace(strict, **limits), -540.0, PERIOD)[1]
     assert "of 540" in dive.judge(log, strict, 540.0, PERIOD)[1]

@@ -362,6 +362,7 @@ def test_what_happens_in_a_run_is_told_in_the_next_frame(overrides, told, tmp_pa
         ({"start": 0.3, "end": 0.1}, "start (--from) is 0.3 s, valid: less than end = 0.1 s"),
     ],
 )
+@pytest.mark.usefixtures("drawing")
 def test_bad_arguments_are_named_with_their_range(log, tmp_path, arguments, message):
     with pytest.raises(InputError) as caught:
         filmstrip(log, tmp_path / "strip.png", **arguments)

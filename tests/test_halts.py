@@ -67,6 +67,13 @@ def test_a_halt_too_short_for_a_squat_is_not_looked_at():
     assert unkept(TIME, KEPT, (*HALTS, (14.0, 18.0)), 0.1, PERIOD) == 14.0
 
 
+@pytest.mark.parametrize(("rows", "kept"), [(61, True), (60, False)])
+def test_a_second_without_progress_keeps_a_halt(rows, kept):
+    """From row to row 0.2 rev, more than the least, but for so many rows alike from 8 s on."""
+    turned = 0.2 * np.concatenate((np.arange(480), np.full(rows, 480), np.arange(481, 1202 - rows)))
+    assert (unkept(TIME, turned, HALTS, 0.1, PERIOD) is None) == kept
+
+
 def test_rows_in_which_it_is_to_roll():
     assert going(np.array([0.0, 6.9, 7.0, 10.9, 11.0]), HALTS).tolist() == [1, 1, 0, 0, 1]
     found, _ = judged(THROUGH, ((0.0, math.inf),))

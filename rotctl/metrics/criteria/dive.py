@@ -24,7 +24,7 @@ COLUMNS = (
     Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),
     Column("entry_sag", "The part of it in the plane of the dive", "deg"),
     Column("bent_most", "Joint furthest off the straight pose at entry", "deg"),
-    Column("clearance", "Nearest to the platform on the way down", "m"),
+    Column("clearance", "Nearest to where it last stood, on the way down", "m"),
     Column("entry_time", "Time of the entry", "s"),
 )
 
@@ -81,7 +81,7 @@ def judge(
         (abs(turned - target) < NEAREST, f"turned {turned:.0f} deg of {target:g}"),
         (m.entry_angle < c.angle, f"enters {m.entry_angle:.1f} deg off the vertical"),
         (m.bent_most < c.bent, f"enters with a joint bent by {m.bent_most:.0f} deg"),
-        (not m.clearance <= c.clearance, f"came within {m.clearance:.2f} m of the platform"),
+        (not m.clearance <= c.clearance, f"came within {m.clearance:.2f} m of where it last stood"),
     )
     reason = next((reason for kept, reason in rules if not kept), "")
     found = {"revolved": turned, **asdict(m), **peaks.measure(log, row or 0)}
