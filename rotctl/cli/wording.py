@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 STILL = 0.05  # [rev, rev/s] less is no rolling
 SHORT = 5  # times what is left out: of a shorter run that is more than a fifth
 SOON = 0.05  # [s] less is at once
+WHOLE = 999.5  # from here on in whole numbers: three digits would be of a power of ten
 AWAY = 0.6  # [-] of a command: who is so far off it does not follow it; Table 1's rows are within
 
 
@@ -41,7 +42,10 @@ def readable(summary: dict[str, Any], settle: float = 0.0) -> str:
 
     def shown(key: str) -> str:
         value = summary[key]
-        return one_line(value) if isinstance(value, str) else number(key, ".3g")
+        if isinstance(value, str):
+            return one_line(value)
+        large = isinstance(value, int | float) and abs(value) >= WHOLE
+        return number(key, ".0f" if large else ".3g")
 
     name, seed, run, reason = (
         one_line(str(summary.get(key, "-")))
