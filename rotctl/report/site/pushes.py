@@ -76,7 +76,8 @@ def draw(figure: Any, found: dict[str, pd.DataFrame]) -> None:
             )
         axes.set_theta_zero_location("N")
         axes.set_xticks(np.radians([0, 90, 180, 270]), ["forward", "left", "back", "right"])
-        axes.set_yticks(np.arange(len(shares)) + 0.5, [f"{value:g}" for value in shares.index])
+        rings = [f"{value:g}" for value in shares.index]
+        axes.set_yticks(np.arange(len(shares)) + 0.5, [*rings[:-1], f"{rings[-1]} N s"])
         axes.set_axisbelow(False)
         axes.tick_params(labelsize=7)
         axes.tick_params(
