@@ -49,3 +49,22 @@ def test_what_a_choice_adds_is_told_where_it_adds_it(key, known, sign):
     assert complaint([f"{sign}{key}=1"]) == (
         f"unknown key '{key}'; what +{group}=CHOICE adds is {known}"
     )
+
+
+@pytest.mark.parametrize(
+    ("override", "known"),
+    [
+        ("speed=2", "behaviour.speed"),
+        ("pace.brake=9", "behaviour.pace.brake"),
+        ("mass=60", "character.mass or plant.mass"),
+    ],
+)
+def test_a_key_without_its_group_is_told_with_it(override, known):
+    key = override.partition("=")[0]
+    assert complaint(["behaviour=forward_roll", override]).startswith(
+        f"unknown key {key!r}; did you mean {known}? valid keys: behaviour, "
+    )
+
+
+def test_a_name_that_many_keys_have_is_nobodys():
+    assert complaint(["name=x"]).startswith("unknown key 'name'; valid keys: behaviour, ")

@@ -70,6 +70,7 @@ def test_what_is_like_none_of_them_has_no_hint(word):
             ["run", "--terrain", "flat"],
             "unrecognized arguments: --terrain (write terrain=CHOICE); ",
         ),
+        (["run", "--seed=3"], "unrecognized arguments: --seed=3 (write seed=NUMBER); "),
         (["tune"], "the following arguments are required: NAME, --out; see rotctl tune --help"),
         (["rnu"], "'rnu': no such choice; did you mean run? valid: run, render, "),
         (

@@ -64,6 +64,7 @@ ELSEWHERE = {  # what writes to a file that one names
     "run's elsewhere",
     "--json": "; it is printed on stdout, so write: --json > {}",
 }
+NUMBERS = ("seed", "duration")  # keys of a config that other programs have options for
 NO_LOG = "an unfinished run leaves no log"
 
 
@@ -126,6 +127,8 @@ def _instead_of(text: str, options: list[str], takes_overrides: bool) -> str:
     option, key = text.partition("=")[0], text.lstrip("-").partition("=")[0]
     if takes_overrides and choices(key):
         return f"write {key}=CHOICE"
+    if takes_overrides and key in NUMBERS:
+        return f"write {key}=NUMBER"
     return meant(option, options).rstrip()
 
 

@@ -18,6 +18,7 @@ from rotctl.settings.checking import brief, clip, unknown_key
 from rotctl.settings.plain import NOTHING, Way, dotted, find, keys_under, member, put, way
 
 PARTS = (("behaviour", "parts"), ("criteria", "parts"))  # of a chain
+MOST = 3  # keys of one name that are told: among more nobody finds the one that is meant
 
 
 def explain(error: Exception, overrides: list[Override], valid: dict[str, Any]) -> str:
@@ -75,7 +76,8 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
             last = depth + 1 == len(parts) and isinstance(part, str) and isinstance(place, dict)
             if sets and last and _may_add(valid, parts, override.value()):
                 return f"{key} is not there yet; write +{key}=VALUE"
-            return unknown_key(key, dotted(parts[:depth]), keys_under(place))
+            known = "" if depth else _elsewhere(valid, parts)
+            return unknown_key(key, dotted(parts[:depth]), keys_under(place), known)
         place = inner
     if override.is_delete():
         if isinstance(parts[-1], int):
@@ -93,6 +95,22 @@ def _complaint(override: Override, valid: dict[str, Any]) -> str:
     if not isinstance(value, dict):
         return ""
     return f"{key}={brief(value)}: has keys that are not there yet; write +{key}=VALUE"
+
+
+def _elsewhere(valid: dict[str, Any], parts: Way) -> str:
+    """The keys that end in this one, those that are least deep; empty if none or many do."""
+    level: list[tuple[Way, dict[str, Any]]] = [((), valid)]
+    while level:
+        level = [
+            ((*place, name), inner)
+            for place, found in level
+            for name, inner in found.items()
+            if isinstance(inner, dict)
+        ]
+        there = [dotted((*place, *parts)) for place, f in level if find(f, parts) is not NOTHING]
+        if there:
+            return " or ".join(there) if len(there) <= MOST else ""
+    return ""
 
 
 def _may_add(valid: dict[str, Any], parts: Way, value: Any) -> bool:

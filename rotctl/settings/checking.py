@@ -189,11 +189,11 @@ def _begins_with_key(message: str, found: Any) -> bool:
     return match is not None and isinstance(found, dict) and match[1] in found
 
 
-def unknown_key(key: str, where: str, valid: Sequence[str]) -> str:
-    """One line on a key that settings do not have."""
+def unknown_key(key: str, where: str, valid: Sequence[str], known: str = "") -> str:
+    """One line on a key that settings do not have, `known` elsewhere by that name."""
     under = f" under {where}" if where else ""
     wrong = key.removeprefix(f"{where}.").partition(".")[0]  # what is below it may be right
-    near = meant(wrong, valid)
+    near = f"did you mean {known}? " if known else meant(wrong, valid)
     return f"unknown key {clip(key)!r}; {near}valid keys{under}: {', '.join(valid)}"
 
 
