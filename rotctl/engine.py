@@ -11,7 +11,7 @@ VARIABLE = "MUJOCO_GL"
 def mujoco_without_opengl() -> None:
     """Import MuJoCo without OpenGL, which is half of the time that takes.
 
-    That also works where `MUJOCO_GL` makes no sense.
+    That also works where `MUJOCO_GL` makes no sense, or names one that does not work.
     """
     before = os.environ.get(VARIABLE)
     os.environ[VARIABLE] = "disable"

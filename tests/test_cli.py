@@ -229,6 +229,14 @@ def test_a_backend_of_opengl_that_there_is_not(cli, tmp_path, monkeypatch, argum
     assert os.listdir(tmp_path) == []
 
 
+@pytest.mark.parametrize("arguments", [["show", "--part", "seed"], ["diff", "{log}", "{log}"]])
+def test_who_draws_nothing_needs_no_opengl_that_works(made, arguments):
+    """In a process of its own: MuJoCo, imported by itself, raises where its OpenGL does."""
+    words = [word.format(log=made[2]) for word in arguments]
+    code, _, stderr = finish(*words, env={**os.environ, "MUJOCO_GL": "wgl"})  # which Windows has
+    assert (code, stderr) == (0, "")
+
+
 def test_what_is_not_known_is_not_repeated_at_length(cli):
     code, _, stderr = cli("run", "--" + "a" * 10**6)
     assert (code, len(stderr.splitlines())) == (2, 1)

@@ -239,6 +239,7 @@ def test_import_says_what_it_made_of_the_file(captured, tmp_path, cli, monkeypat
     assert load_clip(str(tmp_path / "my roll.yaml")).name == "roll"
 
 
+@pytest.mark.usefixtures("drawing")
 def test_a_clip_in_a_conf_of_ones_own_is_found(tmp_path, cli, monkeypatch):
     monkeypatch.chdir(tmp_path)
     keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
@@ -248,6 +249,7 @@ def test_a_clip_in_a_conf_of_ones_own_is_found(tmp_path, cli, monkeypatch):
     assert cli("preview-motion", "mine", "--out", tmp_path / "a.png", "--frames", 2)[0] == 0
 
 
+@pytest.mark.usefixtures("drawing")
 def test_import_author_and_preview_draw(captured, tmp_path, cli, monkeypatch):
     monkeypatch.setattr("rotctl.cli.commands.clips.CLIP_FRAMES", 2)
     out = tmp_path / "clip.yaml"

@@ -170,7 +170,7 @@ def test_the_largest_that_is_let_through_takes_less_than_a_gigabyte(tmp_path):
     bodies = "<body><freejoint/><geom size='1'/></body>" * 160 + "<geom size='1'/>" * 19_000
     (tmp_path / "a.xml").write_text(mjcf(f"<asset>{heights}</asset>", bodies))
     script = (
-        "import sys, mujoco\n"
+        "import sys, headless, mujoco\n"
         "from test_rendering_stored_model import Stored\n"
         "from rotctl.report import stored_model\n"
         "model = stored_model.load(Stored(open(sys.argv[1]).read(), 1127))\n"

@@ -137,6 +137,7 @@ def test_pages_are_sound(site):
         assert policy.endswith("img-src 'self' file:; base-uri 'none'; form-action 'none'")
 
 
+@pytest.mark.usefixtures("drawing")
 def test_links_and_pictures_lead_somewhere(site):
     for path in (site / "index.html", *site.glob("sweeps/*.html")):
         page = Page(path)
@@ -206,6 +207,7 @@ def test_files_of_others_stay(made, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("name", ["summary.md", "files.txt", "pictures", "sweeps"])
+@pytest.mark.usefixtures("drawing")
 def test_what_is_in_the_way_of_a_report_is_told(made, tmp_path, capsys, name):
     (tmp_path / name).write_text("mine")
     assert main(["report", str(made), "--out", str(tmp_path)]) == 2

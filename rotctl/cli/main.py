@@ -14,6 +14,7 @@ from typing import NoReturn
 
 from rotctl.cli.parser import parse
 from rotctl.cli.wording import one_line
+from rotctl.engine import mujoco_without_opengl
 from rotctl.errors import RotctlError
 from rotctl.report import gl
 
@@ -66,6 +67,8 @@ def _commanded(arguments: argparse.Namespace) -> int:
     if "overrides" in arguments:
         arguments.overrides = expanded(arguments.overrides)
     gl.chosen()  # where it makes no sense MuJoCo raises, whatever it is needed for
+    if arguments.with_mujoco:
+        mujoco_without_opengl()  # by itself it raises where the one that is chosen does not work
     with own(arguments.config_dir):
         code = int(arguments.command(arguments))
         if sys.stdout:  # None where the shell has closed it

@@ -59,6 +59,7 @@ COMMANDS = (
     *(searches.add_tune, clips.add_import, clips.add_author, clips.add_preview),
     completion.add_completion,
 )
+WITHOUT_MUJOCO = ("list", "ls", "inspect", "completion")  # and need not wait for its import
 ELSEWHERE = {  # what writes to a file that one names
     "--filmstrip": "; it is drawn beside what is made; rotctl render RUN --filmstrip {} draws a "
     "run's elsewhere",
@@ -145,10 +146,11 @@ def _parser() -> argparse.ArgumentParser:
     chosen = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for add in COMMANDS:
         add(chosen)
-    for command in chosen.choices.values():
+    for name, command in chosen.choices.items():
         _add_config_dir(command, argparse.SUPPRESS)  # before or after the command's name
         interrupted = command.get_default("interrupted") or NO_LOG
         command.set_defaults(parser=command, commands=chosen.choices, interrupted=interrupted)
+        command.set_defaults(with_mujoco=name not in WITHOUT_MUJOCO)
     return parser
 
 

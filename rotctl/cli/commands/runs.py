@@ -58,9 +58,6 @@ def add_run(commands: Commands) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate one run and say how it went."""
-    from rotctl.engine import mujoco_without_opengl
-
-    mujoco_without_opengl()
     from rotctl.behaviours.chain.settings import first_stage
     from rotctl.config.loading import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME

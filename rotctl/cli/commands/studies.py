@@ -56,9 +56,6 @@ def sweep(arguments: argparse.Namespace) -> int:
     """Simulate a grid of runs, or what is left of it."""
     from contextlib import closing
 
-    from rotctl.engine import mujoco_without_opengl
-
-    mujoco_without_opengl()
     from rotctl.results import experiments, manifest
     from rotctl.sweep import keep
     from rotctl.sweep.claimed import require_claims
