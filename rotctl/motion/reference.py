@@ -1,8 +1,9 @@
 """Phase-locked reference poses: r_a and r_b a little after and before where the roll is now.
 
 [Brown2013] section 4.3 with excursion in place of time: r_a = r(theta + lead + window) and
-r_b = r(theta + lead - window), where r is one cycle of a clip over the phase theta. A captured
-motion seldom rolls on as it is; `offsets` bend it until it does, smoothly and by a few numbers.
+r_b = r(theta + lead - window), where r is one cycle of a clip over the phase theta; the paper has
+r_a behind and r_b ahead, 1 - gamma for gamma. A captured motion seldom rolls on as it is; `offsets`
+bend it until it does, smoothly and by a few numbers.
 """
 
 from collections.abc import Mapping, Sequence
