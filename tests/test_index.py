@@ -11,6 +11,7 @@ from rotctl.cli.main import main
 from rotctl.log import RunLog
 from rotctl.results import index
 from rotctl.results.table import table
+from rotctl.settings.documents import DEEPEST
 from rotctl.sweep.keep import Keep
 from rotctl.sweep.keep import read as read_keep
 from rotctl.sweep.launch import launch
@@ -223,3 +224,12 @@ def test_parts_that_name_parts_stay_as_small_as_a_config(tmp_path, keys, levels)
     found = index.read(tmp_path)
     assert found.damaged > levels // 2
     assert len(found.named) + found.damaged == levels
+
+
+def test_configs_are_no_deeper_than_documents_may_be():
+    nested = 1
+    for _ in range(DEEPEST):
+        nested = {"a": nested}
+    index.require_size(nested)
+    with pytest.raises(ValueError, match="without end"):
+        index.require_size([nested])

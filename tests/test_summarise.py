@@ -21,7 +21,7 @@ from rotctl.results.groups import grouped, markdown
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.stored_runs import DONE, MISSING, StoredRun, stored_runs
-from rotctl.results.table import Table, differing, table, tabulated
+from rotctl.results.table import Table, _order, differing, table, tabulated
 from rotctl.runs.run import make, run
 from rotctl.settings.writing import to_dict
 
@@ -447,3 +447,7 @@ def test_an_outcome_that_rotctl_does_not_write_is_damage(sweep, outcome, reason)
     log = sorted(sweep.glob("*/run.h5"))[0]
     change(log, outcome)
     assert table(sweep).notes == ([f"{log.parent.name}: damaged: {reason}"] if reason else [])
+
+
+def test_rows_stand_by_numbers_then_text_then_what_is_not_there():
+    assert sorted([None, "b", 2, "a", 1.5], key=_order) == [1.5, 2, "a", "b", None]
