@@ -13,10 +13,11 @@ from scipy.stats import norm
 
 from rotctl.cli.main import main
 from rotctl.config.loading import load
-from rotctl.errors import InputError
+from rotctl.errors import InputError, LogError
 from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
 from rotctl.results import index
+from rotctl.results.code import code_version
 from rotctl.results.groups import grouped, markdown
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
@@ -451,3 +452,14 @@ def test_an_outcome_that_rotctl_does_not_write_is_damage(sweep, outcome, reason)
 
 def test_rows_stand_by_numbers_then_text_then_what_is_not_there():
     assert sorted([None, "b", 2, "a", 1.5], key=_order) == [1.5, 2, "a", "b", None]
+
+
+def test_code_is_told_by_versions_and_the_beginning_of_its_commit():
+    made = {"versions": {"rotctl": "0.1.0", "mujoco": "4.0.0"}, "git_commit": "0123456789abcdef"}
+    told = [code_version(made | {"git_dirty": dirty}) for dirty in (False, True)]
+    assert told == [
+        "rotctl 0.1.0 (0123456), mujoco 4.0.0",
+        "rotctl 0.1.0 (0123456 with changes), mujoco 4.0.0",
+    ]
+    with pytest.raises(LogError, match="versions are not those of a rotctl log"):
+        code_version({"versions": "{}", "git_commit": "", "git_dirty": False})
