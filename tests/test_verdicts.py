@@ -7,6 +7,7 @@ import pytest
 
 from rotctl.config.loading import load
 from rotctl.metrics.criteria import orientation, standing
+from rotctl.metrics.criteria.judge import _torque
 
 PERIOD = 1.0 / 60.0
 TURNING = load(["behaviour=turn_over"]).criteria
@@ -163,3 +164,10 @@ def test_who_lands_may_crouch_and_then_stands_for_two_seconds():
 )  # fmt: skip
 def test_who_lands_otherwise_does_not_stand(log, reason):
     assert judged_stand(log, LANDING) == reason
+
+
+def test_the_torque_that_one_in_a_hundred_exceeds_is_told_as_a_share_of_the_limit():
+    one_way = np.linspace(0.0, -40.0, 101)[:, None]  # of one joint, in steps of a hundredth
+    log = {"trajectory/ctrl": one_way, "model/torque_limit": np.array([80.0])}
+    assert _torque(log) == pytest.approx(0.5 * 0.99)
+    assert np.isnan(_torque(log | {"trajectory/ctrl": one_way[:0]}))
