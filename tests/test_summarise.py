@@ -169,6 +169,24 @@ def test_one_key_stands_in_the_table_and_what_is_the_same_below_it():
     assert markdown(found).endswith("The same in all runs: plant varied, top 1.")
 
 
+def test_what_one_run_has_otherwise_is_not_the_same_in_all_runs():
+    """Quartiles do not see one run of nine, and what a run lacks is not what others have."""
+    rows = pd.DataFrame({"behaviour": "a", "status": DONE, "success": True, "code": ""}, range(9))
+    rows["failures"] = [0] * 8 + [5]
+    rows["lean"] = [None] * 6 + [42.14] * 3
+    rows["recovered"] = [None] * 7 + [1, 0]
+    rows["height"] = [0.5] * 8 + [0.50001]
+    measured = ["failures", "lean", "recovered", "height"]
+    found = grouped(Table(rows, ["behaviour"], measured, []))
+    head, _, told, _, same = markdown(found).splitlines()
+    assert head.startswith("| behaviour | n | success [95 %]  | failures | lean ")
+    assert told.split("|")[4:-1] == [" 0        ", " 42.1 of 3 ", " 50 % of 2 "]
+    assert same == "The same in all runs: height 0.5."
+    (row,) = found.rows.to_dict("records")
+    assert (row["lean_n"], row["recovered_n"]) == (3, 2)
+    assert "failures_n" not in row
+
+
 def test_long_values_that_begin_alike_are_not_told_to_be_the_same():
     rows = [
         {"run_id": f"{i}", "status": DONE, "behaviour": "a", "key": 90 * "x" + end, "success": True}

@@ -1,5 +1,6 @@
 """Success rates with their uncertainty, and quartiles, by group; for people and for programs."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -52,15 +53,18 @@ class Groups:
     Attributes:
         rows: the keys, `n`, `succeeded`, `success_rate`, `success_low`, `success_high`,
             `distinct`, `no_result`, and `_q25`, `_median`, `_q75` of every metric; of one that is
-            yes or no also `_rate`, the share of yes among the runs that have it.
+            yes or no also `_rate`, the share of yes among the runs that have it; of one that only
+            some runs with a result have also `_n`, how many.
         keys: the columns that name a group.
         metrics: those that were measured and are no words, such as the kind of the criteria.
+        alike: of the metrics those that all runs with a result have, and with one value as shown.
         notes: what a reader should know, one line each.
     """
 
     rows: pd.DataFrame
     keys: list[str]
     metrics: list[str]
+    alike: frozenset[str]
     notes: list[str]
 
 
@@ -88,17 +92,21 @@ def grouped(table: Table, by: Sequence[str] | None = None, mixed: bool = False) 
         if not mixed and "code" not in keys:
             keys.append("code")
     metrics = [metric for metric in table.metrics if not _words(table.rows[metric])]
+    done = (table.rows["status"] == DONE).to_numpy()
+    numbers = {m: pd.to_numeric(table.rows[m], errors="coerce") for m in metrics}
+    values = {m: column.to_numpy(dtype=float) for m, column in numbers.items()}
     rows: list[dict[str, Any]] = [
         dict(zip(keys, name, strict=True)) | measured
-        for name, measured in _measured(table, keys, metrics)
+        for name, measured in _measured(table.rows, keys, done, values)
     ]
+    alike = frozenset(metric for metric in metrics if _alike(values[metric][done]))
     n, apart = sum(row["n"] for row in rows), sum(row["distinct"] for row in rows)
     if apart < n:
         notes.append(
             f"{n} runs, {apart} distinct: the others are the same to the bit, and intervals count "
             "them once; seeds draw nothing there, of a recorded start they do with start.scatter"
         )
-    return Groups(pd.DataFrame(rows), keys, metrics, notes)
+    return Groups(pd.DataFrame(rows), keys, metrics, alike, notes)
 
 
 def _words(column: pd.Series) -> bool:
@@ -107,16 +115,21 @@ def _words(column: pd.Series) -> bool:
     return bool(column.notna().any() and not numbers)
 
 
+def _alike(values: Array) -> bool:
+    """Whether there are runs, all have a number, and a reader sees the same one of each."""
+    return len(values) > 0 and _shown(values.min()) == _shown(values.max()) != _shown(math.nan)
+
+
 def _measured(
-    table: Table, keys: list[str], metrics: Sequence[str]
+    made: pd.DataFrame, keys: list[str], done: NDArray[np.bool_], numbers: Mapping[str, Array]
 ) -> Iterator[tuple[Name, dict[str, Any]]]:
     """Keys of each group and how its runs did; read into arrays once, as groups may be many."""
-    done = (table.rows["status"] == DONE).to_numpy()
-    success = table.rows["success"].eq(True).to_numpy()  # may be missing
-    numbers = [pd.to_numeric(table.rows[metric], errors="coerce") for metric in metrics]
-    values = np.array([column.to_numpy(dtype=float) for column in numbers]).T
-    same, _ = pd.factorize(simulated(table.rows))
-    for name, runs in _in_order(table.rows, keys):
+    success = made["success"].eq(True).to_numpy()  # may be missing
+    values = np.array(list(numbers.values())).T
+    known = ~np.isnan(values[done]) if numbers else np.zeros((0, 0), dtype=bool)
+    some = set(np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)).tolist())
+    same, _ = pd.factorize(simulated(made))
+    for name, runs in _in_order(made, keys):
         with_result = runs[done[runs]]
         n, succeeded = len(with_result), int(success[with_result].sum())
         apart = len(np.unique(same[with_result]))
@@ -130,10 +143,12 @@ def _measured(
             "distinct": apart,
             "no_result": len(runs) - n,
         }
-        if metrics:
-            for metric, found in zip(metrics, _quartiles(values[with_result]), strict=True):
+        if numbers:
+            for metric, found in zip(numbers, _quartiles(values[with_result]), strict=True):
                 row |= {f"{metric}_{q}": x for q, x in zip(QUARTILES, found, strict=True)}
-            for i, metric in enumerate(metrics):
+            for i, metric in enumerate(numbers):
+                if i in some:
+                    row[f"{metric}_n"] = int((~np.isnan(values[with_result, i])).sum())
                 if metric in YES_OR_NO:
                     there = values[with_result, i]
                     there = there[~np.isnan(there)]
@@ -178,10 +193,7 @@ def markdown(groups: Groups) -> str:
     rows: list[dict[Any, Any]] = groups.rows.to_dict("records")
     told = {m: [_spread(row, m) for row in rows] for m in groups.metrics if m not in IN_FILES_ONLY}
     spreads = {metric: texts for metric, texts in told.items() if set(texts) != {"-"}}
-    metrics = list(spreads)
-    constant = {metric for metric, texts in spreads.items() if len(set(texts)) == 1}
-    constant &= {metric for metric, texts in spreads.items() if "[" not in texts[0]}
-    varying = [metric for metric in metrics if metric not in constant]
+    varying = [metric for metric in spreads if metric not in groups.alike]
     named = {key: [_text(row[key], "g") for row in rows] for key in groups.keys}
     alike = {  # of a long value the text is its beginning
         key: named[key][0]
@@ -207,7 +219,7 @@ def markdown(groups: Groups) -> str:
         "| " + " | ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)) + " |"
         for line in lines
     ]
-    alike |= {metric: spreads[metric][0] for metric in metrics if metric in constant}
+    alike |= {metric: spreads[metric][0] for metric in spreads if metric in groups.alike}
     same = [
         f"{name} {text}"
         for name, text in alike.items()
@@ -222,11 +234,19 @@ def _rate(row: Mapping[str, Any]) -> str:
 
 
 def _spread(row: Mapping[str, Any], metric: str) -> str:
+    """Median and quartiles, or the share of yes; of how many runs, where others lack it."""
     if f"{metric}_rate" in row:
         rate = row[f"{metric}_rate"]
-        return "-" if rate is None or rate != rate else f"{100 * rate:.0f} %"
-    low, middle, high = (_text(row[f"{metric}_{name}"], ".3g") for name in QUARTILES)
-    return middle if low == middle == high else f"{middle} [{low}, {high}]"
+        told = "-" if rate is None or rate != rate else f"{100 * rate:.0f} %"
+    else:
+        low, middle, high = (_shown(row[f"{metric}_{name}"]) for name in QUARTILES)
+        told = middle if low == middle == high else f"{middle} [{low}, {high}]"
+    of = row.get(f"{metric}_n", row["n"])
+    return told if of in (0, row["n"]) else f"{told} of {of}"
+
+
+def _shown(value: float) -> str:
+    return _text(value, ".3g")
 
 
 def _text(value: Any, form: str, longest: int | None = LONGEST) -> str:
