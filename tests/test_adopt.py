@@ -204,6 +204,27 @@ def test_the_command_writes_a_choice(robot, tmp_path, monkeypatch, capsys):
     assert "--map left_hip=no: no such body; its bodies: " in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("told", "why"),
+    [
+        ("left_hip=right_thigh", "is of one limb with right_thigh, the right_hip"),
+        ("left_hip=pelvis", "right_thigh, the right_hip, hangs on it, too"),
+        ("left_hip=torso", "is of the trunk"),
+        ("left_knee=right_shin", "does not hang on left_thigh, the left_hip"),
+        ("left_wrist=left_upper_arm", "does not hang on left_lower_arm, the left_elbow"),
+        ("chest=pelvis", "both arms hang on torso, and that is the chest"),
+        ("hips=left_shin", "is not between legs and arms: pelvis, torso"),
+        ("head=pelvis", "is of the trunk"),
+    ],
+)
+def test_a_body_that_cannot_be_what_it_is_called_is_told(tmp_path, capsys, told, why):
+    """It ended in a traceback, or another body was taken in its place without a word."""
+    path = tmp_path / "robot.xml"
+    path.write_text(text())
+    assert main(["inspect-model", str(path), "--map", told]) == 2
+    assert capsys.readouterr().err == f"rotctl: {path}: --map {told}: {why}\n"
+
+
 def test_a_limit_at_zero_has_no_sign(tmp_path, capsys):
     path = tmp_path / "robot.xml"
     path.write_text(text(**{'range="-150 2"': 'range="-150 0"'}))

@@ -353,6 +353,10 @@ def test_what_is_told_counts(roll, plain, tmp_path, capsys):
     assert "Bone_7, Actor_LeftLeg" in capsys.readouterr().out
     assert main([*arguments, "--map", "left_hip=Bone_8"]) == 2
     assert "--map left_hip=Bone_8: no such joint; its joints: Actor_Hips" in capsys.readouterr().err
+    told = ["--map", "left_hip=Bone_7", "--map", "left_knee=Actor_RightLeg"]
+    assert main([*arguments, *told]) == 2
+    why = "does not hang on Bone_7, the left_hip"
+    assert capsys.readouterr().err == f"rotctl: {path}: --map left_knee=Actor_RightLeg: {why}\n"
     with pytest.raises(SystemExit):
         main([*arguments, "--map", "hip=Bone_7"])
     assert "'hip=Bone_7': valid: ROLE=NAME, of hips, chest" in capsys.readouterr().err

@@ -24,6 +24,7 @@ from rotctl.adopting.tree import Segment, hung
 from rotctl.errors import InputError
 from rotctl.maths.rotations import length
 from rotctl.motion.naming import find_roles
+from rotctl.motion.told_roles import need_trunk
 
 _ADULT = {
     "waist": 200.0, "chest": 200.0, "spine": 200.0, "neck": 50.0, "hip": 250.0, "knee": 250.0,
@@ -86,7 +87,13 @@ def adopt(
     names = [mj.body(b).name or f"body_{b}" for b in range(mj.nbody)]
     parents = {names[b]: names[mj.body_parentid[b]] if mj.body_parentid[b] else ""
                for b in range(1, mj.nbody)}  # fmt: skip
-    roles = find_roles(path, _with_ends(parents), given, "body")
+    ends = _with_ends(parents)
+    roles = find_roles(path, ends, given, "body")
+    for role, body in roles.items():
+        above = names.index(body.removesuffix(END))
+        if mj.body_rootid[above] != mj.jnt_bodyid[0]:
+            raise InputError(f"{path}: {role} is {body!r}, which hangs on no freejoint")
+    need_trunk(path, ends, given or {}, roles)
     if "hips" not in (given or {}):  # that of the legs alone: a tree may hang on the chest
         roles["hips"] = _common(parents, roles["left_hip"], roles["right_hip"])
     if roles["hips"] == roles["chest"]:
@@ -96,9 +103,6 @@ def adopt(
     if roles.get("head", "").removesuffix(END) in [names[b] for b in mj.jnt_bodyid]:
         roles["head"] = roles["head"].removesuffix(END)  # the last body that a hinge moves
     bodies = {role: names.index(body) for role, body in roles.items() if body in names}
-    for role, body in bodies.items():
-        if mj.body_rootid[body] != mj.jnt_bodyid[0]:
-            raise InputError(f"{path}: {role} is {names[body]!r}, which hangs on no freejoint")
     data = mujoco.MjData(mj)
     straighten(mj, data, bodies)
     face_forward(data, bodies)

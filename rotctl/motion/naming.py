@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from rotctl.errors import InputError
+from rotctl.motion.told_roles import need_heeded
 from rotctl.suggestion import instead
 
 SIDES = {"l": "left", "r": "right"}
@@ -54,8 +55,8 @@ def find_roles(
         thing: what the file calls those that are named.
 
     Raises:
-        InputError: a joint that is needed is not found, or is given and not there, or there is no
-            such role.
+        InputError: a joint that is needed is not found, or is given and is not there or none that
+            can be it, or there is no such role.
     """
     tree = _Tree(parents, thing)
     roles = dict(given or {})
@@ -77,6 +78,7 @@ def find_roles(
         legs = tree.common(roles["left_hip"], roles["right_hip"])
         roles["hips"] = tree.common(legs, neck or shoulders)
     roles["chest"] = shoulders
+    need_heeded(path, parents, given or {}, roles)
     return {role: roles[role] for role in ROLES if role in roles}
 
 
