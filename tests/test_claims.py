@@ -88,6 +88,7 @@ def test_values_that_are_no_numbers_are_left_out():
         claim("speed", 1.0, 0.1), runs([True, False, False], speed=[1.0, None, float("inf")]), []
     )
     assert (found.verdict, found.measured.runs) == (REPRODUCED, 1)
+    assert found.remarks == ("2 of 3 runs have no 'speed'",)
 
 
 def test_without_a_result_it_is_not_tested():

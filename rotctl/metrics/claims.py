@@ -118,6 +118,8 @@ def judge(claim: Claim, table: "pd.DataFrame", keys: Sequence[str]) -> Judged:
     found = measured(done, claim.metric, claim.quantile)
     if len(done) and claim.metric in done.columns and not found.runs:
         remarks.append(f"no run has a number of {claim.metric!r}")
+    elif 0 < found.runs < len(done):
+        remarks.append(f"{len(done) - found.runs} of {len(done)} runs have no {claim.metric!r}")
     return Judged(claim, _verdict(claim, found, missing), found, missing, tuple(remarks))
 
 
