@@ -14,7 +14,7 @@ A run depends on its config alone, so that the same config gives the same log as
 does. Whatever is wrong with what is given is an `rotctl.errors.InputError` of one line.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import AbstractContextManager, closing
 from os import PathLike
 from pathlib import Path
@@ -141,16 +141,23 @@ def report(folder: str | Path, out: str | Path = "site") -> Path:
     return place / "index.html"
 
 
+_OVERRIDES = "overrides: must be a list of texts, such as ['seed=3']"
+
+
 def _words(overrides: Iterable[str]) -> list[str]:
     """Overrides as a list, with those of files in their files' places.
 
     Raises:
-        InputError: they are no texts in a list, or a text by itself, which is one of letters.
+        InputError: they are no texts in a list, but such as a text by itself, which is one of
+            letters, or a dict, which is one of keys.
     """
-    words = list(overrides) if isinstance(overrides, Iterable) else [overrides]
-    if isinstance(overrides, str) or not all(isinstance(word, str) for word in words):
+    if isinstance(overrides, str | Mapping) or not isinstance(overrides, Iterable):
         what = "a text" if isinstance(overrides, str) else f"of {_kind(overrides)}"
-        raise InputError(f"overrides: must be a list of texts, such as ['seed=3'], not {what}")
+        raise InputError(f"{_OVERRIDES}, not {what}")
+    words = list(overrides)
+    other = [word for word in words if not isinstance(word, str)]
+    if other:
+        raise InputError(f"{_OVERRIDES}, and {other[0]!r:.60} is of {_kind(other[0])}")
     return expanded(words)
 
 

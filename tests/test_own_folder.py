@@ -283,7 +283,9 @@ def test_no_file_is_named_for_how_two_of_ones_own_meet(here, capsys):
     [
         (lambda: api.simulate(["seed=1"]), r"^config: must be one, not of type list; api\.load\("),
         (lambda: api.load("seed=1"), r"^overrides: must be a list of texts, .*, not a text$"),
-        (lambda: api.load([1]), r"^overrides: must be a list of texts, .*, not of type list$"),
+        (lambda: api.load(["duration=1", 1]), r"^overrides: .* texts, .*, and 1 is of type int$"),
+        (lambda: api.load({"seed": 3}), r"^overrides: must be a list of texts, .* of type dict$"),
+        (lambda: api.load([None]), r"^overrides: .*, and None is of type NoneType$"),
         (lambda: api.load(3), r"^overrides: .*, not of type int$"),
         (lambda: api.load(config_dir=3), "^config_dir: must be a path, not of type int$"),
         (lambda: api.sweep("seed=1,2", "out"), "^overrides: must be a list of texts"),

@@ -266,7 +266,7 @@ def test_quartiles_are_of_the_values_that_are_there():
     assert list(groups["n"]) == [1, 1, 3, 2, 4, 1]
 
 
-def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep):
+def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep, capsys):
     logs = sorted(sweep.glob("*/run.h5"))
     change(logs[0], {"success": False, "failure_reason": "stalled"})
     entries = read(sweep)
@@ -286,6 +286,9 @@ def test_a_roll_that_fell_counts_and_a_failed_run_is_told(sweep):
     (row,) = groups.rows.to_dict("records")
     assert (row["n"], row["succeeded"], row["no_result"]) == (4, 3, 2)
     assert "| 4 | 2         | 75 % [30, 95]  |" in markdown(groups)
+    assert main(["ls", str(sweep)]) == 0
+    listed = [line.split("-  ")[-1] for line in capsys.readouterr().out.splitlines()]
+    assert {"not run", "failed to run: its worker died"} <= {line.strip() for line in listed}
 
 
 def test_a_run_that_is_not_there_is_told_in_its_group(tmp_path):

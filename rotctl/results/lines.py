@@ -57,6 +57,7 @@ def _behaviour(run: StoredRun) -> str:
 def _cells(run: StoredRun, keys: Sequence[str], folder: Path) -> list[str]:
     lasted = run.outcome.get("duration")
     ended = "success" if run.outcome.get("success") else str(run.outcome.get("failure_reason", ""))
+    without = f"{run.status}: {run.reason}" if run.reason else run.status
     return [
         run.run_id,
         _written(folder / run.log) if run.log else "",
@@ -64,7 +65,7 @@ def _cells(run: StoredRun, keys: Sequence[str], folder: Path) -> list[str]:
         f"seed {run.outcome.get('seed', run.values.get('seed', _NONE))}",
         f"{lasted:.1f} s" if isinstance(lasted, int | float) else _NONE,
         _values(run, keys),
-        " ".join((ended if run.status == DONE else f"{run.status}: {run.reason}").split()),
+        " ".join((ended if run.status == DONE else without).split()),
     ]
 
 
