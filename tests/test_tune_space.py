@@ -88,6 +88,11 @@ def test_a_shipped_space_fits_its_config_and_gives_its_reasons(name):
             "parameters.1: key must be dotted names, as in controller.tasks.linear.damping.0",
         ),
         (
+            ["parameters", 1, "key"],
+            "criteria.heading",
+            "parameters.1.key=criteria.heading: criteria judge what a search finds",
+        ),
+        (
             ["parameters", 0, "key"],
             "controller.pose.weight",
             "parameters name controller.pose.weight twice",

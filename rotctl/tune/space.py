@@ -84,6 +84,8 @@ class Parameter:
     def __post_init__(self) -> None:
         if not _KEY.fullmatch(self.key):
             raise ValueError("key must be dotted names, as in controller.tasks.linear.damping.0")
+        if self.key.startswith("criteria."):
+            raise ValueError(f"key={self.key:.60}: criteria judge what a search finds")
         if self.low >= self.high:
             raise ValueError(f"low={self.low:g} must be below high={self.high:g}")
         if self.start is not None and not self.low <= self.start <= self.high:
