@@ -361,6 +361,18 @@ def test_a_run_that_blows_up_is_a_failed_row_with_its_good_states(tmp_path):
     assert text.startswith("MuJoCo warns: ")
 
 
+@pytest.mark.parametrize(("behaviour", "at"), [("forward_roll_1", "0.00"), ("stand", "0.03")])
+def test_a_run_with_more_contacts_than_there_is_room_for_is_no_success(behaviour, at, tmp_path):
+    """What bears, touches and sticks is read from the slots: it would be told of some contacts."""
+    asked = [f"behaviour={behaviour}", "duration=2.5", "seed=2001"]
+    assert run(load(asked), tmp_path).summary["success"]
+    few = run(load([*asked, "physics.contact_capacity=2"]), tmp_path).summary
+    assert few["failure_reason"] == (
+        f"contacts fill all 2 slots at t = {at} s: what else touched is not known; "
+        "physics.contact_capacity makes room"
+    )
+
+
 def test_a_run_without_a_single_good_state_has_nulls(tmp_path):
     result = run(load(NEVER_STARTS), tmp_path)
     text = (result.folder / SUMMARY_NAME).read_text()

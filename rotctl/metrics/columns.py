@@ -44,6 +44,18 @@ def slots_taken(log: Arrays) -> int:
     return int(taken[-1]) + 1 if len(taken) else 0
 
 
+def no_room(log: Arrays, period: float) -> str:
+    """When contacts first took all slots of a row, as there may have been more; empty if never."""
+    taken = np.asarray(log["contacts/body"]) >= 0
+    full = np.flatnonzero(taken.all(axis=1) & (taken.size > 0))
+    if not len(full):
+        return ""
+    return (
+        f"contacts fill all {taken.size // len(taken)} slots at t = {full[0] * period:.2f} s: what "
+        "else touched is not known; physics.contact_capacity makes room"
+    )
+
+
 def solver_failures(log: Arrays) -> int:
     """Control steps on which every solver failed."""
     return int(np.count_nonzero(np.asarray(log["solver/status"]) == ALL_FAILED))

@@ -17,7 +17,7 @@ from rotctl.metrics import (
     peaks,
 )
 from rotctl.metrics import halts as told_to
-from rotctl.metrics.columns import Arrays, floats, solver_failures
+from rotctl.metrics.columns import Arrays, floats, no_room, solver_failures
 from rotctl.metrics.criteria import (
     acrobatic,
     chain,
@@ -173,6 +173,8 @@ def judge(
         reason = f"ended after {steps * period:.2f} of {wanted:g} s"
     elif failures:
         reason = f"every solver failed on {failures} control steps"
+    else:
+        reason = no_room(log, period) or reason
     torque = found["torque_p99_fraction"] if "torque_p99_fraction" in found else _torque(log)
     common = {"duration": steps * period, "torque_p99_fraction": torque}
     return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
