@@ -225,6 +225,56 @@ def test_a_body_that_cannot_be_what_it_is_called_is_told(tmp_path, capsys, told,
     assert capsys.readouterr().err == f"rotctl: {path}: --map {told}: {why}\n"
 
 
+def test_what_acts_otherwise_than_by_motors_is_told_and_left_out(tmp_path):
+    path = tmp_path / "robot.xml"
+    section = (
+        '<tendon><fixed name="cord"><joint joint="belly" coef="1"/></fixed></tendon><equality>'
+        '<joint joint1="left_knee" joint2="right_knee"/></equality><actuator>'
+        '<motor tendon="cord"/>'
+    )
+    held = {"<actuator>": section, '<body name="head"': '<body name="head" gravcomp="1"'}
+    path.write_text(text(**held))
+    assert adopt(path, "robot").notes[:4] == [
+        "1 equality constraints left out",
+        "1 tendons left out",
+        "1 actuators of no joint left out",
+        "gravcomp left out: all of its bodies weigh",
+    ]
+
+
+@pytest.mark.parametrize("beside", ['mocap="true"', 'pos="3 0 2"'])
+def test_what_stands_beside_it_is_no_part_of_it(tmp_path, beside):
+    """It was weighed and measured with the body, which then fitted none of its bodies."""
+    path = tmp_path / "robot.xml"
+    path.write_text(text())
+    alone = adopt(path, "robot").character
+    table = f'<body name="table" {beside}><geom type="box" size="1 1 1" mass="50"/></body>'
+    path.write_text(text(**{"<worldbody>": f"<worldbody>{table}"}))
+    assert adopt(path, "robot").character == alone
+
+
+def test_a_body_whose_shape_is_left_out_counts_where_it_weighs(tmp_path):
+    path = tmp_path / "robot.xml"
+    head = '<geom type="sphere" size="0.1" pos="0 0 0.1" mass="4"/>'
+    lost = '<geom mesh="m" mass="4"/><inertial pos="0 0 0.1" mass="4" diaginertia="1 1 1"/>'
+    asset = '<asset><mesh name="m" file="nowhere.stl"/></asset><worldbody>'
+    path.write_text(text(**{head: lost, "<worldbody>": asset}))
+    made = adopt(path, "robot")
+    assert made.notes[:2] == [
+        f"{tmp_path / 'nowhere.stl'}: no such file: left out",
+        "1 shapes that are meshes are left out",
+    ]
+    assert build(load_with(made.character)).model.mass == pytest.approx(50.0)
+
+
+def test_a_place_that_is_none_is_refused(tmp_path):
+    path = tmp_path / "robot.xml"
+    path.write_text(text(**{'pos="0 0 1.2"': 'pos="0 0 nan"'}))
+    with pytest.raises(InputError) as refused:
+        adopt(path, "robot")
+    assert str(refused.value) == f"{path}: a number of its body_pos is none, NaN or infinity"
+
+
 def test_a_limit_at_zero_has_no_sign(tmp_path, capsys):
     path = tmp_path / "robot.xml"
     path.write_text(text(**{'range="-150 2"': 'range="-150 0"'}))

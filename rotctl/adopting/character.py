@@ -109,8 +109,8 @@ def adopt(
     segments = hung(mj, data, bodies["hips"])
     give_names(segments, bodies, names)
     notes += [*_hang_joints(segments), *unlike(mj, segments)]
-    total = float(mj.body_mass[1:].sum())
-    reach = stature(mj, data, hulls=hulls)
+    total = float(mj.body_mass[list(segments)].sum())  # what stands beside it weighs nothing of it
+    reach = stature(mj, data, segments, hulls=hulls)
     shaped = {b: shapes(mj, data, segment, total, hulls=hulls) for b, segment in segments.items()}
     made = _character(segments, shaped, name, total, reach, notes)
     known = {h.name: h.source for s in segments.values() if s.side != "right" for h in s.hinges}

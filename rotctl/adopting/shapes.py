@@ -1,5 +1,6 @@
 """The solid shapes of a foreign humanoid as capsules and spheres, and meshes as hulls."""
 
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 import mujoco
@@ -68,11 +69,15 @@ def _hull(corners: Array) -> Piece:
     return Piece(centre, centre, max(length(corner - centre) for corner in corners), corners)
 
 
-def stature(mj: mujoco.MjModel, data: mujoco.MjData, *, hulls: bool) -> tuple[float, float]:
-    """Lowest and highest z of the shapes [m]."""
-    all_of_it = [piece for b in range(1, mj.nbody) for piece in pieces(mj, data, b, hulls=hulls)]
-    if not all_of_it:  # meshes alone: as far as its bodies reach
-        return float(data.xpos[1:, 2].min()), float(data.xpos[1:, 2].max())
+def stature(
+    mj: mujoco.MjModel, data: mujoco.MjData, bodies: Collection[int], *, hulls: bool
+) -> tuple[float, float]:
+    """Lowest and highest z of the shapes of these bodies [m]."""
+    found = {b: pieces(mj, data, b, hulls=hulls) for b in bodies}
+    if not any(found.values()):  # meshes alone: as far as its bodies reach
+        heights = data.xpos[list(bodies), 2]
+        return float(heights.min()), float(heights.max())
+    all_of_it = [piece for b, some in found.items() for piece in some or [_weight(data, b)]]
     reaches = [_reach(piece) for piece in all_of_it]
     return min(low for low, _ in reaches), max(high for _, high in reaches)
 
@@ -84,6 +89,12 @@ def _reach(piece: Piece) -> tuple[float, float]:
     return low - piece.radius, high + piece.radius
 
 
+def _weight(data: mujoco.MjData, body: int) -> Piece:
+    """Of a body without a shape, which weighs all the same."""
+    place = data.xipos[body]
+    return Piece(place, place, 0.02)
+
+
 def shapes(
     mj: mujoco.MjModel, data: mujoco.MjData, segment: Segment, total: float, *, hulls: bool
 ) -> list[dict[str, Any]]:
@@ -93,9 +104,7 @@ def shapes(
     """
     mass = float(mj.body_mass[segment.body])
     solid = pieces(mj, data, segment.body, hulls=hulls)
-    if not solid:  # it weighs all the same
-        place = data.xipos[segment.body]
-        solid = [Piece(place, place, 0.02)]
+    solid = solid or [_weight(data, segment.body)]
     volume = [_volume(piece) for piece in solid]
     shares = [max(mass, 1e-4 * total) / total * part / sum(volume) for part in volume]
     found = [

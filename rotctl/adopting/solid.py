@@ -4,6 +4,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import mujoco
+import numpy as np
 
 from rotctl.adopting.meshes import boxed
 from rotctl.adopting.proxies import only_these_touch
@@ -13,6 +14,15 @@ from rotctl.mechanics.foreign import BONES, compiled, forget_meshes, is_mesh, re
 _MOTORS = ("actuator", "motor", "general", "position", "velocity")
 _SHAPES = ("inertial", "asset", "mesh")
 _FILES = ("material", "hfield", "fitscale")  # of a geom, what needs more than meshes
+_ACTING = {
+    "equality": "equality constraints",
+    "tendon": "tendons",
+    "actuator": "actuators of no joint",
+}
+_PLACES = (
+    *("body_pos", "body_quat", "body_mass", "jnt_pos", "jnt_axis", "jnt_range"),
+    *("geom_pos", "geom_size"),
+)
 _FEATHER = {"pos": "0 0 0", "mass": "0.001", "diaginertia": "1e-6 1e-6 1e-6"}
 
 
@@ -37,13 +47,27 @@ def solid(
     known = {mesh.get("name", "") for mesh in root.iter("mesh") if "vertex" in mesh.attrib}
     if hulls and not (known and meshes):
         raise InputError(f"{path}: --hulls: acts on nothing, as none of its shapes is a mesh here")
+    notes += _unheeded(root)
     missing = _keep_shapes(root, known if meshes else set())
     if missing:
         notes.append(f"{missing} shapes that are meshes are left out")
     mj = compiled(path, root)
+    for name in _PLACES:
+        if not np.isfinite(getattr(mj, name)).all():
+            raise InputError(f"{path}: a number of its {name} is none, NaN or infinity")
+    if mj.body_gravcomp.any():
+        notes.append("gravcomp left out: all of its bodies weigh")
     if proxies:
         notes += only_these_touch(path, root, mj, proxies)
     return mj, notes
+
+
+def _unheeded(root: ElementTree.Element) -> list[str]:
+    """Notes on what acts on its joints in the file and will not on the character's."""
+    inside = {part: [child for each in root.findall(part) for child in each] for part in _ACTING}
+    inside["actuator"] = [child for child in inside["actuator"] if "joint" not in child.attrib]
+    counts = {what: len(inside[part]) for part, what in _ACTING.items()}
+    return [f"{count} {what} left out" for what, count in counts.items() if count]
 
 
 def _keep_shapes(root: ElementTree.Element, known: set[str]) -> int:
