@@ -185,6 +185,10 @@ def test_what_one_run_has_otherwise_is_not_the_same_in_all_runs():
     (row,) = found.rows.to_dict("records")
     assert (row["lean_n"], row["recovered_n"]) == (3, 2)
     assert "failures_n" not in row
+    rows["seed"], rows.loc[:1, "status"] = range(9), "not run"  # the first groups have no result
+    rows.loc[:1, measured] = None
+    text = markdown(grouped(Table(rows, ["behaviour", "seed"], measured, []), ["seed"]))
+    assert text.splitlines()[-1] == "The same in all runs: height 0.5."
 
 
 def test_long_values_that_begin_alike_are_not_told_to_be_the_same():

@@ -219,7 +219,8 @@ def markdown(groups: Groups) -> str:
         "| " + " | ".join(f"{c:{w}}" for c, w in zip(line, widths, strict=True)) + " |"
         for line in lines
     ]
-    alike |= {metric: spreads[metric][0] for metric in spreads if metric in groups.alike}
+    shared = {m: next(text for text in spreads[m] if text != "-") for m in spreads}
+    alike |= {metric: text for metric, text in shared.items() if metric in groups.alike}
     same = [
         f"{name} {text}"
         for name, text in alike.items()
