@@ -440,6 +440,34 @@ def test_a_robots_csv(roll, plain, robot, tmp_path, how):
     assert made.roles["left_wrist"] == "forearm_l end"
 
 
+@pytest.mark.parametrize(
+    ("column", "called", "why"),
+    [
+        ("knee_l", "left_knee", "'left_knee' is none"),
+        ("knee_l", "knee_r", "one is missing or comes twice"),
+    ],
+)
+def test_names_that_are_in_part_the_robots_are_told(roll, robot, tmp_path, column, called, why):
+    """The model's order was taken, and joints were others."""
+    path = tmp_path / "a.csv"
+    with pytest.raises(InputError) as refused:
+        imported(path, table(roll, "named").replace(column, called), model=robot)
+    told = (
+        f"{path}: names of joints that are only in part the model's: {why}; its joints: waist_y, "
+    )
+    assert str(refused.value).startswith(told)
+
+
+def test_a_robots_angles_in_degrees_are_told(roll, robot, tmp_path):
+    degrees = np.hstack([roll[:, :7], np.degrees(roll[:, 7:])])
+    np.savez(tmp_path / "a.npz", qpos=degrees, frequency=60.0)
+    with pytest.raises(InputError) as refused:
+        imported(tmp_path / "a.npz", model=robot)
+    most = np.degrees(np.abs(roll[:, 7]).max())
+    told = f"{tmp_path / 'a.npz'}: waist_y is at {most:.0f} rad; are its angles degrees?"
+    assert str(refused.value) == told
+
+
 @pytest.mark.parametrize("how", ["qpos", "by level", "by depth", "dof_pos"])
 def test_a_robots_npz(roll, plain, robot, tmp_path, how):
     mj, path = adult().mj, tmp_path / "a.npz"

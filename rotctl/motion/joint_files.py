@@ -25,6 +25,7 @@ from rotctl.motion.untrusted import Arrays, arrays_of, numbers, text_of
 CSV_RATE = 30.0  # [Hz] of the LAFAN1 motions on robots; the files do not say
 FITS = 0.05  # [m] between bodies where the file and where the joints have them
 LOOKED_AT = 8  # frames
+MOST_TURNED = 4 * np.pi  # [rad] no hinge of a body winds itself up so far
 _ROOT = 7  # numbers of the root
 
 
@@ -50,6 +51,9 @@ def read_joints(path: Path, model: Path | None, rate: float | None = None) -> Ca
     if not 2 <= n <= MAX_FRAMES:
         raise InputError(f"{path}: {n} frames, valid: 2 to {MAX_FRAMES}")
     bounded(path, mj.nbody, n)
+    for name, most in zip(_hinges(mj), np.abs(positions[:, _ROOT:]).max(axis=0), strict=True):
+        if most > MOST_TURNED:
+            raise InputError(f"{path}: {name} is at {most:.0f} rad; are its angles degrees?")
     return _capture(mj, positions, period * np.arange(n, dtype=np.float64))
 
 
@@ -119,7 +123,7 @@ def _from_csv(path: Path, mj: mujoco.MjModel) -> Array:
     table, head = table[:, width - columns :], head[width - columns :]  # a time, or a number
     w_first = len(head) > _ROOT and head[3].lower().endswith("w")
     root = table[:, 3:7] if w_first else np.roll(table[:, 3:7], 1, axis=1)
-    return _positions(mj, table[:, :3], _quaternions(path, root), table[:, 7:], head[7:])
+    return _positions(path, mj, table[:, :3], _quaternions(path, root), table[:, 7:], head[7:])
 
 
 def _from_npz(arrays: Arrays, mj: mujoco.MjModel) -> Array:
@@ -129,6 +133,7 @@ def _from_npz(arrays: Arrays, mj: mujoco.MjModel) -> Array:
         table = arrays.numbers("qpos", None, _ROOT + hinges)
         names = arrays.texts("joint_names") if "joint_names" in arrays else []
         return _positions(
+            arrays.path,
             mj,
             table[:, :3],
             _quaternions(arrays.path, table[:, 3:7]),
@@ -141,13 +146,14 @@ def _from_npz(arrays: Arrays, mj: mujoco.MjModel) -> Array:
         turned = arrays.numbers("body_quat_w", len(angles), places.shape[1], 4)
         root = _quaternions(arrays.path, turned[:, 0])
         if "joint_names" in arrays:
-            return _positions(mj, places[:, 0], root, angles, arrays.texts("joint_names"))
+            names = arrays.texts("joint_names")
+            return _positions(arrays.path, mj, places[:, 0], root, angles, names)
         return _by_places(arrays.path, mj, places, root, angles)
     if "dof_pos" in arrays:
         angles = arrays.numbers("dof_pos", None, hinges)
         root = np.roll(arrays.numbers("root_rot", len(angles), 4), 1, axis=1)
         place = arrays.numbers("root_pos", len(angles), 3)
-        return _positions(mj, place, _quaternions(arrays.path, root), angles, [])
+        return _positions(arrays.path, mj, place, _quaternions(arrays.path, root), angles, [])
     raise InputError(
         f"{arrays.path}: no joints that are known (qpos; joint_pos, body_pos_w, body_quat_w; or "
         f"root_pos, root_rot, dof_pos); it has: {arrays.names}"
@@ -155,10 +161,21 @@ def _from_npz(arrays: Arrays, mj: mujoco.MjModel) -> Array:
 
 
 def _positions(
-    mj: mujoco.MjModel, place: Array, root: Array, angles: Array, names: Sequence[str]
+    path: Path, mj: mujoco.MjModel, place: Array, root: Array, angles: Array, names: Sequence[str]
 ) -> Array:
-    """Generalised positions; angles in the order of names, if all are the model's."""
+    """Generalised positions; angles in the order of names, or of the model if it has none of them.
+
+    Raises:
+        InputError: it has some.
+    """
     hinges = _hinges(mj)
+    other = [name for name in names if name not in hinges]
+    if len(other) < len(names) and sorted(names) != sorted(hinges):
+        why = f"{other[0]!r:.60} is none" if other else "one is missing or comes twice"
+        raise InputError(
+            f"{path}: names of joints that are only in part the model's: {why}; "
+            f"its joints: {', '.join(hinges):.300}"
+        )
     if sorted(names) == sorted(hinges):
         angles = angles[:, [list(names).index(name) for name in hinges]]
     return np.hstack([place, root, angles])
@@ -167,7 +184,7 @@ def _positions(
 def _by_places(path: Path, mj: mujoco.MjModel, places: Array, root: Array, angles: Array) -> Array:
     """Whichever order puts the bodies where the file has them: the model's, or level by level."""
     if places.shape[1] != mj.nbody - 1:
-        return _positions(mj, places[:, 0], root, angles, [])
+        return _positions(path, mj, places[:, 0], root, angles, [])
     hinges, found = _hinges(mj), []
     chosen = np.unique(np.linspace(0, len(angles) - 1, LOOKED_AT).astype(int))
     deep = list(range(1, mj.nbody))
@@ -176,7 +193,7 @@ def _by_places(path: Path, mj: mujoco.MjModel, places: Array, root: Array, angle
         order = [
             mj.joint(j).name for b in bodies for j in range(1, mj.njnt) if mj.jnt_bodyid[j] == b
         ]
-        positions = _positions(mj, places[:, 0], root, angles, order)
+        positions = _positions(path, mj, places[:, 0], root, angles, order)
         there = _capture(mj, positions[chosen], np.arange(len(chosen), dtype=float))
         at = np.stack([there.joints[_name(mj, b)].position for b in bodies], axis=1)
         found.append((float(np.abs(at - places[chosen]).max()), positions))
