@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.behaviours.facing import lying
 from rotctl.behaviours.staged.conditions import Low
+from rotctl.behaviours.staged.gliding import ReachSettings
 from rotctl.behaviours.staged.placing import Above, Opposite
-from rotctl.behaviours.staged.posing import ReachSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
 from rotctl.config.loading import load
 from rotctl.control.kinds import kind

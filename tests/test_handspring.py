@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.aerial.landing import Landing
-from rotctl.behaviours.staged.posing import TurnSettings
+from rotctl.behaviours.staged.following import TurnSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
 from rotctl.config.loading import load
 from rotctl.metrics.criteria.acrobatic import AcrobaticCriteria, judge, out_of_order, told

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.staged.conditions import Over
-from rotctl.behaviours.staged.posing import GlideSettings
+from rotctl.behaviours.staged.gliding import GlideSettings
 from rotctl.behaviours.staged.stages import Stage, mirrored
 from rotctl.behaviours.standing.poising import Shift, _hands, _over
 from rotctl.config.loading import load

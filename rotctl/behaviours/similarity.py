@@ -22,8 +22,10 @@ from rotctl.behaviours.rolling.finishing import FinishSettings
 from rotctl.behaviours.rolling.pacing import PaceSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.conditions import After, Leant, Leaves, Low, Near, Over, Passed, Still
+from rotctl.behaviours.staged.following import RiseSettings
+from rotctl.behaviours.staged.gliding import GlideSettings, ReachSettings
 from rotctl.behaviours.staged.placing import Above, Ground, Opposite
-from rotctl.behaviours.staged.posing import Beyond, GlideSettings, ReachSettings, RiseSettings
+from rotctl.behaviours.staged.posing import Beyond
 from rotctl.behaviours.staged.stages import TaskSettings
 from rotctl.behaviours.staged.touching import Airborne, Launched, Touches
 from rotctl.behaviours.standing.balance import Capture, Lunge

@@ -10,13 +10,9 @@ from rotctl.behaviours.aerial.flight_settings import FlightSettings
 from rotctl.behaviours.facing import Lying
 from rotctl.behaviours.staged.aims import SERVES, Aim
 from rotctl.behaviours.staged.conditions import Leaves, Turned, Until
-from rotctl.behaviours.staged.posing import (
-    Beyond,
-    GlideSettings,
-    ReachSettings,
-    RiseSettings,
-    TurnSettings,
-)
+from rotctl.behaviours.staged.following import RiseSettings, TurnSettings
+from rotctl.behaviours.staged.gliding import GlideSettings, ReachSettings
+from rotctl.behaviours.staged.posing import Beyond
 from rotctl.behaviours.standing.stepping import Stepping
 from rotctl.control.kinds import KINDS
 from rotctl.control.supervisor import SupervisorName
