@@ -25,7 +25,7 @@ from rotctl.mechanics.state import read
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.runs.summary import summarise
-from rotctl.simulation.start import place
+from rotctl.simulation.placing import place
 
 
 @pytest.fixture(scope="module")

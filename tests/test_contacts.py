@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from rotctl.mechanics.contacts import contact_jacobian, read_contacts, realised_forces
-from rotctl.simulation.start import Start, place
+from rotctl.simulation.placing import place
+from rotctl.simulation.start import Start
 
 CONES = {
     "elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC,

@@ -14,7 +14,8 @@ from rotctl.errors import InputError
 from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.state import read
 from rotctl.qp import Solution, failed, make_solver
-from rotctl.simulation.start import Start, place
+from rotctl.simulation.placing import place
+from rotctl.simulation.start import Start
 
 
 class Broken:

@@ -11,7 +11,8 @@ from rotctl.behaviours.facing import FACING
 from rotctl.config.loading import load
 from rotctl.mechanics.state import read
 from rotctl.runs import scenario
-from rotctl.simulation.start import Start, place
+from rotctl.simulation.placing import place
+from rotctl.simulation.start import Start
 
 # World direction of the trunk's front, left and up at phase 0.
 AT_PHASE_0 = {

@@ -22,7 +22,7 @@ from rotctl.metrics.criteria.finish import upright
 from rotctl.metrics.criteria.getting_up import GettingUpCriteria, judge
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
-from rotctl.simulation.start import place
+from rotctl.simulation.placing import place
 
 FEET = ("foot_l", "foot_r")
 UP = GettingUpCriteria("up", "getting_up", FEET, 4.0, 2.0, 0.8, 20.0, 0.25)

@@ -21,7 +21,7 @@ from rotctl.settings.writing import to_dict
 from rotctl.simulation.clearance import clearance
 from rotctl.simulation.episode import Episode
 from rotctl.simulation.known import Known, StateSettings, pitch
-from rotctl.simulation.start import beginning
+from rotctl.simulation.placing import beginning
 
 ROW = 30
 STATE = StateSettings(

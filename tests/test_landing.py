@@ -12,7 +12,7 @@ from rotctl.errors import InputError
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.runs.summary import summarise
-from rotctl.simulation.start import place
+from rotctl.simulation.placing import place
 
 EXACT = ["start.scatter=0", "start.tilt=0", "start.falling.across=0"]
 LAW = "start.falling.landing"

@@ -27,8 +27,7 @@ from rotctl.mechanics.plant import PLANT_STREAM, Motors, Senses, Variation
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.mechanics.terrain import FASTEST, Basin
 from rotctl.mechanics.water import Water
-from rotctl.simulation import aloft, falling
-from rotctl.simulation import start as starts
+from rotctl.simulation import aloft, falling, sampling
 from rotctl.simulation.lockstep import LockstepStepper
 from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import MujocoStepper, Stepper
@@ -131,7 +130,7 @@ def build(config: Config, making: Making = ANEW, *, again: bool = False) -> Scen
         stepper=_stepper(config.physics, model),
         senses=senses,
         motors=motors,
-        start=starts.draw(
+        start=sampling.draw(
             asking(config.start, by, falling.UNITS | aloft.UNITS),
             known,
             config.behaviour.roll_about,

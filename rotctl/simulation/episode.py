@@ -20,7 +20,8 @@ from rotctl.mechanics.plant import Motors, Senses
 from rotctl.mechanics.state import State
 from rotctl.mechanics.terrain import Ground
 from rotctl.simulation.ground_forces import GroundForces
-from rotctl.simulation.start import Start, beginning, place
+from rotctl.simulation.placing import beginning, place
+from rotctl.simulation.start import Start
 from rotctl.simulation.stepping import Stepper
 
 INITIAL_BLEND = 0.5  # gamma before the first decision: no preference
