@@ -11,7 +11,8 @@ from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.expressions.expression import NAMES
 from rotctl.settings.writing import to_dict
-from rotctl.tune.space import ROLLING, TRAINING_SEEDS, load_space, names
+from rotctl.tune.objective import ROLLING
+from rotctl.tune.space import TRAINING_SEEDS, load_space, names
 from rotctl.tune.values import (
     configs,
     final_seeds,

@@ -1,8 +1,6 @@
-"""What a search may change, on which runs, and how it is scored: `conf/tune/NAME.yaml`."""
+"""What a search may change, and on which runs: `conf/tune/NAME.yaml`."""
 
 import re
-from dataclasses import field
-from math import isfinite
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -11,16 +9,13 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.choices.listing import instead_of, named_file, named_files
 from rotctl.errors import InputError
-from rotctl.metrics import appearance, pace
-from rotctl.metrics.criteria import rolling
-from rotctl.metrics.expressions import expression
 from rotctl.settings import documents
 from rotctl.settings.checking import checked
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Positive
 from rotctl.suggestion import instead
 from rotctl.tune.key_braces import MOST, expanded
+from rotctl.tune.objective import Objective
 
-ROLLING = tuple(c.name for kind in (rolling, appearance, pace) for c in kind.COLUMNS)
 TRAINING_SEEDS = 1_000_000  # the first; every seed below is for judging
 # An index of three digits is plenty: a list is made as long as that.
 _KEY = re.compile(r"[A-Za-z]\w*(\.[A-Za-z]\w*)+(\.\d{1,3})?")
@@ -94,84 +89,6 @@ class Parameter:
             )
         if self.scale == "log" and self.low <= 0:
             raise ValueError(f"low={self.low:g} must be above 0 on a log scale")
-
-
-@validated(frozen=True, config=STRICT)
-class Wish:
-    """What a column of the summary should be.
-
-    Attributes:
-        weight: taken off where it is missed by `miss` or more [-].
-        low, high: between which all is well, in the column's unit; one of them may be absent.
-        miss: so far outside takes off all of the weight, less in proportion [unit of the column].
-    """
-
-    weight: NonNegative
-    miss: Positive
-    low: Finite | None = None
-    high: Finite | None = None
-
-    def __post_init__(self) -> None:
-        if self.low is None and self.high is None:
-            raise ValueError("give low, high or both")
-        if self.low is not None and self.high is not None and self.low > self.high:
-            raise ValueError(f"low={self.low:g} must not exceed high={self.high:g}")
-
-    def missed(self, value: float) -> float:
-        """By how much of `miss` a value is outside, at most 1; all of it if it is no number."""
-        if not isfinite(value):
-            return 1.0
-        below = 0.0 if self.low is None else self.low - value
-        above = 0.0 if self.high is None else value - self.high
-        return min(max(below, above, 0.0) / self.miss, 1.0)
-
-
-@validated(frozen=True, config=STRICT)
-class Objective:
-    """Weights of a run's score, and how the scores of runs make that of a candidate.
-
-    Attributes:
-        over_runs: `mean` is the usual; `worst` asks for the same on every start.
-        survival: on the fraction of the time before the run was cut [-].
-        progress: on the revolutions, as a fraction of those at `pace` [-].
-        pace: revolutions a second that earn full marks, and no more than that [rev/s].
-        drift: taken off for each metre of lateral drift [1/m].
-        heading: taken off for each degree of heading error at the end [1/deg].
-        success: on what the config's criteria call a success [-].
-        columns: of the summary row or of `metrics`, by name, and what they should be.
-        metrics: further columns by name, as expressions; see `rotctl.metrics.expressions`.
-    """
-
-    over_runs: Literal["mean", "worst"]
-    survival: NonNegative
-    progress: NonNegative
-    pace: Positive
-    drift: NonNegative
-    heading: NonNegative
-    success: NonNegative = 0.0
-    columns: dict[str, Wish] = field(default_factory=dict)
-    metrics: dict[str, str] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        weights = [self.survival, self.progress, self.drift, self.heading, self.success]
-        if not any(weights + [wish.weight for wish in self.columns.values()]):
-            raise ValueError("all weights are 0, so that no run is better than another")
-        try:
-            expression.read_all(self.metrics)
-        except InputError as error:
-            raise ValueError(str(error)) from None
-        for name in self.metrics:
-            if name in ROLLING:
-                raise ValueError(f"metric {name}: there is a column of that name already")
-            if name not in self.columns:
-                raise ValueError(
-                    f"metric {name}: acts on nothing, no column of that name is wished for"
-                )
-        for name in self.columns:
-            if name not in (*ROLLING, *self.metrics):
-                raise ValueError(
-                    f"a roll has no column {name!r}; it has: {', '.join((*ROLLING, *self.metrics))}"
-                )
 
 
 @validated(frozen=True, config=STRICT)
