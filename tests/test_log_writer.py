@@ -8,13 +8,11 @@ import subprocess
 import sys
 import time
 
-import h5py
 import numpy as np
 import pytest
 
 from rotctl.errors import InputError
-from rotctl.log import SCHEMA, RunLog, TrajectoryBuffer, encode_run, write_run
-from rotctl.log.image import fletcher32
+from rotctl.log import RunLog, TrajectoryBuffer, encode_run, write_run
 
 MODEL = "<mujoco model='é'/>\n"
 ATTRIBUTES = {
@@ -90,62 +88,6 @@ def test_equal_input_gives_equal_bytes(tmp_path):
         for name in ("first.h5", "second.h5")
     )
     assert first == second
-
-
-def test_every_dataset_has_unit_description_and_checksum(tmp_path):
-    write(tmp_path / "run.h5")
-    with h5py.File(tmp_path / "run.h5") as file:
-        for name, spec in SCHEMA.items():
-            assert file[name].attrs["units"] == spec.unit
-            assert file[name].attrs["description"] == spec.description
-            if file[name].shape:
-                assert file[name].fletcher32
-                plain = spec.dtype == "<f8"  # gzip gains little there, and takes long
-                assert file[name].shuffle != plain
-                assert file[name].compression == (None if plain else "gzip")
-
-
-def test_chunks_are_whole_rows_of_about_a_mebibyte(tmp_path):
-    run = TrajectoryBuffer.allocate(steps=3000, nq=100, nv=8, nu=2, capacity=4, tasks=2, bodies=2)
-    write(tmp_path / "run.h5", run)
-    with h5py.File(tmp_path / "run.h5") as file:
-        assert file["trajectory/qpos"].chunks == (1310, 100)
-        assert file["trajectory/time"].chunks == (3000,)
-
-
-def test_slots_that_nobody_filled_take_no_room(tmp_path):
-    run = TrajectoryBuffer.allocate(
-        steps=50, nq=9, nv=8, nu=2, capacity=100, tasks=2, bodies=2
-    ).arrays()
-    run["contacts/position"][3, 20, 1] = -0.0
-    run["contacts/body"][5, 2] = 0
-    run["contacts/normal"][7, 99] = 1.0
-    write(tmp_path / "run.h5", run)
-    with h5py.File(tmp_path / "run.h5") as file:
-        stored = {name: file[name].id.get_num_chunks() for name in SCHEMA if file[name].chunks}
-    log = RunLog.open(tmp_path / "run.h5")
-    log.verify()
-    assert all(log[name].tobytes() == array.tobytes() for name, array in run.items())
-    chunks = ("position", 2), ("body", 1), ("normal", 7), ("force_peak", 0), ("count", 0)
-    assert [stored[f"contacts/{name}"] for name, _ in chunks] == [count for _, count in chunks]
-
-
-@pytest.mark.parametrize("words", [1, 63, 64, 65, 1000, 2**17])
-@pytest.mark.parametrize("most", [0, 1, 255, 65535])
-def test_checksums_are_those_of_hdf5(words, most):
-    rng = np.random.default_rng(words)
-    arrays = [
-        np.zeros(4 * words, "<u2"),
-        np.full(4 * words, most, "<u2"),
-        rng.integers(0, most, 4 * words, "<u2", endpoint=True),
-    ]
-    with h5py.File("a", "w", driver="core", backing_store=False) as file:
-        for array, found in zip(arrays, fletcher32(arrays), strict=True):
-            name = str(len(file))
-            file.create_dataset(name, data=array, chunks=array.shape, fletcher32=True)
-            _, chunk = file[name].id.read_direct_chunk((0,))
-            assert chunk[: array.nbytes] == array.tobytes()
-            assert int.from_bytes(chunk[array.nbytes :], "little") == found
 
 
 def fail(number):
@@ -240,42 +182,6 @@ def test_an_unwritable_folder_is_named(tmp_path):
         os.seteuid(user)
         tmp_path.chmod(0o700)
     assert str(caught.value) == f"cannot write {path}: Permission denied"
-
-
-@pytest.mark.parametrize(
-    ("attributes", "message"),
-    [
-        ({"seed": "3"}, "attribute 'seed' must be int, got str"),
-        ({"seed": True}, "attribute 'seed' must be int, got bool"),
-        ({"seed": 2**63}, f"attribute 'seed' must fit in 64 bits, got {2**63}"),
-        ({"git_dirty": 0}, "attribute 'git_dirty' must be bool, got int"),
-        ({"config": "a\0b"}, "attribute 'config' contains a NUL character"),
-        ({"config": "\ud800"}, "attribute 'config' is not valid Unicode text"),
-        ({"outcome": {"x": object()}}, "cannot store a object as JSON"),
-        (
-            {"colour": "red"},
-            "unknown attribute 'colour'; valid names: config, run_id, seed, versions, "
-            "git_commit, git_dirty, machine, wall_time, outcome",
-        ),
-        (
-            {"complete": True},
-            "unknown attribute 'complete'; valid names: config, run_id, seed, "
-            "versions, git_commit, git_dirty, machine, wall_time, outcome",
-        ),
-    ],
-)
-def test_bad_attributes_are_named(tmp_path, attributes, message):
-    path = tmp_path / "run.h5"
-    with pytest.raises(InputError) as caught:
-        write(path, **attributes)
-    assert str(caught.value) == f"cannot write {path}: {message}"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_missing_attribute_is_named():
-    without = {name: value for name, value in ATTRIBUTES.items() if name != "seed"}
-    with pytest.raises(InputError, match="^missing attribute 'seed'$"):
-        encode_run(buffer(), model_xml=MODEL, attributes=without)
 
 
 def test_arrays_that_do_not_fit_the_schema_are_named(tmp_path):
