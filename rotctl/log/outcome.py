@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from rotctl.errors import LogError
-from rotctl.settings.documents import from_json
+from rotctl.settings.json_documents import from_json
 
 LARGE = 1e300  # no number in a summary is, and none is infinite
 _NEEDED = {"success": bool, "failure_reason": str, "solver_failures": int}

@@ -16,7 +16,7 @@ from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.motion.capture import MAX_FRAMES, Y_UP_FACING_X, Capture, assembled
 from rotctl.motion.untrusted import LARGEST, text_of
-from rotctl.settings import documents
+from rotctl.settings.json_documents import from_json
 
 # Joint: parent, offset from it [m], numbers in a row (4 a quaternion, 1 a hinge, 0 fixed).
 _SKELETON: dict[str, tuple[str, tuple[float, float, float], int]] = {
@@ -72,7 +72,7 @@ def read_deepmimic(path: Path) -> Capture:
 
 def _rows(path: Path) -> Array:
     try:
-        data: Any = documents.from_json(text_of(path))
+        data: Any = from_json(text_of(path))
     except ValueError as error:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         reason = error.msg if isinstance(error, json.JSONDecodeError) else error

@@ -5,7 +5,7 @@ from typing import Any
 
 from rotctl.caching import kept
 from rotctl.errors import LogError
-from rotctl.settings.documents import from_json
+from rotctl.settings.json_documents import from_json
 
 
 def code_version(attributes: Mapping[str, Any]) -> str:

@@ -19,7 +19,8 @@ from rotctl.choices.listing import MOST_VALUES
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME
 from rotctl.log.outcome import plain_outcome, require_verdict
-from rotctl.settings.documents import DEEPEST, from_json_line
+from rotctl.settings.documents import DEEPEST
+from rotctl.settings.json_documents import from_json_line
 
 INDEX_NAME = "runs.jsonl"
 LARGEST = 300_000_000  # bytes of an index: a row takes 800, and 1,000 more with gains of its own

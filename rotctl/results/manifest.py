@@ -13,7 +13,7 @@ from typing import Any
 
 from rotctl import files
 from rotctl.errors import InputError
-from rotctl.settings.documents import read_json_lines
+from rotctl.settings.json_documents import read_json_lines
 
 MANIFEST_NAME = "sweep.jsonl"
 

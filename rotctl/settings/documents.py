@@ -1,4 +1,4 @@
-"""YAML and JSON from strangers to plain data: numbers, texts, lists and dicts of them.
+"""YAML from strangers to plain data: numbers, texts, lists and dicts of them.
 
 Nothing is executed, looked up or multiplied without bound: no tags, no keys twice, bounded depth,
 digits and aliases, no character that neither YAML nor a terminal would show. A date stays a text.
@@ -6,12 +6,9 @@ No message repeats a syntax error's line: the file may not be what its name says
 up in reports.
 """
 
-import json
-import math
 import re
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NoReturn, TypeAlias
+from typing import Any, TypeAlias
 
 import yaml
 
@@ -19,8 +16,6 @@ from rotctl import files
 from rotctl.errors import InputError
 
 LARGEST = 2_000_000  # bytes of a YAML file; people write them
-LARGEST_LINES = 100_000_000  # bytes of a file of JSON lines
-MOST_LINES = 500_000
 MOST_VALUES = 200_000  # of a YAML file: a clip of 3600 samples has a hundred thousand
 DEEPEST = 12  # lists and dicts within each other
 MOST_DIGITS = 40  # of a whole number
@@ -30,8 +25,6 @@ UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-
 # C's parser is five times faster; it may be missing, and both read the same.
 _C = hasattr(yaml, "CSafeLoader")
 _Safe: Any = yaml.CSafeLoader if _C else yaml.SafeLoader
-
-
 _TYPE = "tag:yaml.org,2002:"
 _PLAIN = ("null", "bool", "int", "float")  # what a value without quotes may be beside a text
 
@@ -130,56 +123,6 @@ def from_yaml(where: str, text: str, most: int = MOST_VALUES) -> Any:
         raise InputError(f"{where}: is no YAML: it has a control character") from None
 
 
-def from_json(text: str) -> Any:
-    """The data of a JSON text.
-
-    Raises:
-        ValueError: it is none, or not plain.
-    """
-    try:
-        data = json.loads(text, **_PLAIN_NUMBERS, object_pairs_hook=_unique)
-    except RecursionError:
-        raise ValueError("nested too deeply") from None
-    for value, depth in _walk(data):
-        if isinstance(value, str) and UNPRINTABLE.search(value):
-            raise ValueError("a text has a control character")
-        if depth == DEEPEST and isinstance(value, dict | list):
-            raise ValueError(f"nested more than {DEEPEST} deep")
-    return data
-
-
-def from_json_line(text: str) -> dict[str, Any]:
-    """The object of one line of ASCII, quickly where nothing in it asks for a closer look.
-
-    Raises:
-        ValueError: it is none, or not plain.
-    """
-    brackets = text.count("{") + text.count("[")
-    quick = brackets < _FEW and "\\" not in text and text.rstrip("\n").isprintable()
-    data = json.loads(text, **_PLAIN_NUMBERS) if quick else from_json(text)
-    if not isinstance(data, dict):
-        raise ValueError("no object")
-    return data
-
-
-def read_json_lines(path: Path, *, linked: bool) -> Iterator[tuple[int, Any]]:
-    """The data of every line, with its number from 1 on; None where it is no plain JSON.
-
-    Raises:
-        InputError: it is no text file, or too large.
-    """
-    lines = files.text(path, LARGEST_LINES, linked=linked).split("\n")
-    if not lines[-1]:
-        lines.pop()
-    if len(lines) > MOST_LINES:
-        raise InputError(f"{path}: more than {MOST_LINES} lines")
-    for number, line in enumerate(lines, 1):
-        try:
-            yield number, from_json(line)
-        except ValueError:
-            yield number, None
-
-
 def _check(text: str, most: int) -> None:
     """Refuse what would cost more than it looks like, before anything is built.
 
@@ -232,43 +175,3 @@ def _reason(error: yaml.MarkedYAMLError, text: str) -> str:
 
 def _at(place: Any, problem: str) -> _Refused:
     return _Refused(problem=problem, problem_mark=place.start_mark)
-
-
-def _walk(data: Any) -> Iterator[tuple[Any, int]]:
-    """All values and keys, with how deep they are; the depth is a stranger's: no recursion."""
-    waiting = [(data, 0)]
-    while waiting:
-        value, depth = waiting.pop()
-        yield value, depth
-        if isinstance(value, dict):
-            waiting += [(inner, depth + 1) for pair in value.items() for inner in pair]
-        elif isinstance(value, list):
-            waiting += [(inner, depth + 1) for inner in value]
-
-
-def _no_number(name: str) -> NoReturn:
-    raise ValueError(f"{name} is no number")
-
-
-def _finite(digits: str) -> float:
-    number = float(digits)
-    if not math.isfinite(number):
-        raise ValueError("a number is too large")
-    return number
-
-
-def _short(digits: str) -> int:
-    if len(digits) > MOST_DIGITS:
-        raise ValueError(f"a number has more than {MOST_DIGITS} digits")
-    return int(digits)
-
-
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError("a key comes twice")
-    return found
-
-
-_FEW = 900  # brackets, so that no depth of them overflows a stack
-_PLAIN_NUMBERS: Any = {"parse_constant": _no_number, "parse_float": _finite, "parse_int": _short}

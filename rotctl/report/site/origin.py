@@ -12,7 +12,7 @@ from rotctl.report.title import plain
 from rotctl.results.configs import config_hash
 from rotctl.results.stored_runs import DONE
 from rotctl.results.sweeps import Sweep
-from rotctl.settings.documents import from_json
+from rotctl.settings.json_documents import from_json
 
 LONGEST = 1000  # characters: the end of a machine, its libm and BLAS, is what bits may hang on
 MOST = 8  # different values of a thing that are listed
