@@ -14,6 +14,7 @@ from here import without_processes
 from rotctl import files
 from rotctl.cli.main import main
 from rotctl.errors import InputError
+from rotctl.files import replacement
 from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space
 
@@ -124,7 +125,7 @@ def test_an_interrupt_leaves_nothing(folder, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(files.os, "replace", interrupt)
+    monkeypatch.setattr(os, "replace", interrupt)
     with pytest.raises(KeyboardInterrupt):
         files.replace(folder / "a", b"new")
     with pytest.raises(KeyboardInterrupt), files.replacing(folder / "a"):
@@ -180,8 +181,8 @@ def test_the_part_of_a_third_one_stays_where_that_of_the_second_took_its_place(f
         part.write_bytes(b"another's")
         raise FileNotFoundError(path)
 
-    monkeypatch.setattr(files.os, "open", gone_and_another_begun)
-    files._removed(part)
+    monkeypatch.setattr(os, "open", gone_and_another_begun)
+    replacement._removed(part)
     assert part.read_bytes() == b"another's"
 
 
@@ -331,7 +332,7 @@ def journal(folder, victim):
 
 
 def test_who_waits_for_another_writer_does_not_wait_for_ever(folder, monkeypatch):
-    monkeypatch.setattr(files, "PATIENCE", 0.02)
+    monkeypatch.setattr(replacement, "PATIENCE", 0.02)
     with files.replacing(folder / "a") as part:
         part.write_text("first")
         said = f"^cannot write {folder / 'a'}: another process has been writing it for 0.02 s$"
