@@ -20,7 +20,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders
 from rotctl.choices.override_files import expanded
 from rotctl.config.loading import load as composed
 from rotctl.config.schema import Config
@@ -162,7 +162,7 @@ def _words(overrides: Iterable[str]) -> list[str]:
 
 
 def _own(config_dir: str | Path | None) -> AbstractContextManager[object]:
-    return listing.own(_path("config_dir", config_dir) if config_dir else None)
+    return config_folders.own(_path("config_dir", config_dir) if config_dir else None)
 
 
 def _path(name: str, path: str | Path) -> Path:

@@ -9,7 +9,7 @@ import yaml
 from captures import adult
 from scipy.spatial.transform import Rotation
 
-from rotctl.choices.listing import conf_dir
+from rotctl.choices.config_folders import conf_dir
 from rotctl.errors import InputError
 from rotctl.motion import load_clip
 from rotctl.motion.author import author, load_keys

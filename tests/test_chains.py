@@ -8,7 +8,7 @@ import pytest
 from here import swept
 
 from rotctl.behaviours.staged.conditions import After
-from rotctl.choices import listing
+from rotctl.choices import config_folders
 from rotctl.cli.wording import readable
 from rotctl.config.chains import composed
 from rotctl.config.identity import run_id
@@ -259,7 +259,7 @@ def test_a_chain_of_an_own_character(tmp_path, behaviour):
     (tmp_path / "character").mkdir()
     own = tmp_path / "character" / "tall.yaml"
     own.write_text("defaults: [adult, _self_]\nname: tall\nheight: 1.9\n")
-    with listing.own(tmp_path):
+    with config_folders.own(tmp_path):
         made = load([f"behaviour={behaviour}", "character=tall"])
     assert (made.character.name, made.character.height) == ("tall", 1.9)
 

@@ -5,9 +5,9 @@ import shutil
 
 import pytest
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders
+from rotctl.choices.config_folders import conf_dir
 from rotctl.choices.describing import groups
-from rotctl.choices.listing import conf_dir
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError
@@ -18,7 +18,7 @@ def conf(tmp_path, monkeypatch):
     """A copy of conf/ of our own."""
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "package").mkdir()
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
+    monkeypatch.setattr(config_folders, "__file__", str(tmp_path / "package/choices/here.py"))
     return tmp_path / "conf"
 
 

@@ -10,10 +10,10 @@ import mujoco
 import pytest
 import yaml
 
-from rotctl.choices import composing, listing
+from rotctl.choices import composing, config_folders
 from rotctl.choices.composing import simple
+from rotctl.choices.config_folders import conf_dir
 from rotctl.choices.describing import groups
-from rotctl.choices.listing import conf_dir
 from rotctl.choices.overrides import single
 from rotctl.config.loading import _by_hydra as by_hydra
 from rotctl.config.loading import composed, load
@@ -447,7 +447,7 @@ def test_a_composed_config_may_be_changed_and_the_next_is_as_it_was():
 def test_a_file_that_changed_is_read_again(tmp_path, monkeypatch):
     shutil.copytree(conf_dir(), tmp_path / "conf")
     (tmp_path / "package").mkdir()
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
+    monkeypatch.setattr(config_folders, "__file__", str(tmp_path / "package/choices/here.py"))
     assert composed(["start=rest"])["start"]["pitch"] == [-0.3, 0.0]
     file = tmp_path / "conf" / "start" / "rest.yaml"
     file.write_text(file.read_text().replace("pitch: [-0.3, 0.0]", "pitch: [-0.2, 0.0]"))
@@ -531,7 +531,7 @@ def test_files_that_say_more_are_left_to_hydra(tmp_path, monkeypatch, file, text
     if file == "finish/other.yaml":  # is about another key than the one that builds on it
         stand = "# @package behaviour.finish\ndefaults: [other, _self_]\n"
         (tmp_path / "conf" / "finish" / "stand.yaml").write_text(stand)
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
+    monkeypatch.setattr(config_folders, "__file__", str(tmp_path / "package/choices/here.py"))
     (tmp_path / "package").mkdir()
     assert composing.composed([simple("start=rest"), simple("+finish=stand")]) is None
 
@@ -553,7 +553,7 @@ def test_an_own_choice_that_only_hydra_reads_can_be_added(tmp_path):
     file = tmp_path / "course" / "mine.yaml"
     text = "# @package behaviour.course\ndefaults: [turn, _self_]\nschedule: [[1e0, 5]]\n"
     file.write_text(text)
-    with listing.own(tmp_path):
+    with config_folders.own(tmp_path):
         assert simple("+course=mine") == ("+course", "mine")
         assert composing.composed([simple("+course=mine")]) is None
         assert load(["+course=mine"]).behaviour.course.schedule == ((1.0, 5.0),)

@@ -6,7 +6,7 @@ import sys
 import pytest
 import yaml
 
-from rotctl.choices.listing import conf_dir, shipped
+from rotctl.choices.config_folders import conf_dir, shipped
 from rotctl.errors import InputError
 from rotctl.settings.documents import from_yaml, read_yaml
 

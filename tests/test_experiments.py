@@ -5,7 +5,7 @@ import re
 import pytest
 from here import swept
 
-from rotctl.choices.listing import shipped
+from rotctl.choices.config_folders import shipped
 from rotctl.choices.overrides import parsed
 from rotctl.cli.main import main
 from rotctl.config.loading import load

@@ -10,7 +10,7 @@ from captures import adult, bvh_text, in_order
 from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from rotctl.choices.listing import conf_dir
+from rotctl.choices.config_folders import conf_dir
 from rotctl.cli.clip_wording import _clock
 from rotctl.cli.main import main
 from rotctl.config.loading import load

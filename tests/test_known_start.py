@@ -10,7 +10,7 @@ import yaml
 from logs import changed as with_arrays
 from scipy.spatial.transform import Rotation
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError, LogError
@@ -51,13 +51,13 @@ def recorded(tmp_path_factory):
 def here(tmp_path, monkeypatch):
     """An empty folder with configs of one's own."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(listing.OWN, raising=False)
+    monkeypatch.delenv(config_folders.OWN, raising=False)
     return tmp_path
 
 
 def started(*overrides, folder=None):
     """Behaviour, start and MuJoCo's data of a run that begins."""
-    with listing.own(folder / "conf" if folder else None):
+    with config_folders.own(folder / "conf" if folder else None):
         scenario = build(load(list(overrides)))
     return scenario, Episode(scenario).data
 

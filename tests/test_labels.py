@@ -2,7 +2,7 @@
 
 import pytest
 
-from rotctl.choices.listing import own
+from rotctl.choices.config_folders import own
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.sweep.points import points

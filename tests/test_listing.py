@@ -2,9 +2,10 @@
 
 import pytest
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders
+from rotctl.choices.config_folders import conf_dir
 from rotctl.choices.describing import groups
-from rotctl.choices.listing import choices, conf_dir
+from rotctl.choices.listing import choices
 from rotctl.errors import InputError
 
 
@@ -38,7 +39,7 @@ def conf(tmp_path, monkeypatch):
     (tmp_path / "package").mkdir()
     (tmp_path / "conf" / "start").mkdir(parents=True)
     (tmp_path / "conf" / "config.yaml").write_text("seed: 0\n")
-    monkeypatch.setattr(listing, "__file__", str(tmp_path / "package" / "choices" / "listing.py"))
+    monkeypatch.setattr(config_folders, "__file__", str(tmp_path / "package/choices/here.py"))
     return tmp_path / "conf"
 
 

@@ -7,8 +7,8 @@ import yaml
 from captures import adult
 from test_adopt import text
 
-from rotctl.choices import listing
-from rotctl.choices.listing import own
+from rotctl.choices import config_folders
+from rotctl.choices.config_folders import own
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError
@@ -28,7 +28,7 @@ def here(tmp_path, monkeypatch):
     for folder in (tmp_path, characters):
         (folder / "robot.xml").write_text(text())
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(listing.OWN, raising=False)
+    monkeypatch.delenv(config_folders.OWN, raising=False)
     return tmp_path
 
 

@@ -8,8 +8,9 @@ import pytest
 import yaml
 
 from rotctl import api
-from rotctl.choices import listing
-from rotctl.choices.listing import choices, conf_dir, named_file, own
+from rotctl.choices import config_folders, listing
+from rotctl.choices.config_folders import conf_dir, own
+from rotctl.choices.listing import choices, named_file
 from rotctl.choices.own_folder import kinds, make
 from rotctl.cli.main import main
 from rotctl.config.loading import load
@@ -24,7 +25,7 @@ from rotctl.tune.space import load_space
 def here(tmp_path, monkeypatch):
     """An empty folder that the command line is called in."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(listing.OWN, raising=False)
+    monkeypatch.delenv(config_folders.OWN, raising=False)
     return tmp_path
 
 
@@ -56,7 +57,7 @@ def test_a_copy_is_a_choice_like_any_other(here, cli):
     assert shown == theirs == with_hydra
     (line,) = [line for line in cli("list")[1].splitlines() if "my_roll" in line]
     assert line.endswith(f"[yours: {here / 'conf' / 'behaviour' / 'my_roll.yaml'}]")
-    assert listing.OWN not in os.environ
+    assert config_folders.OWN not in os.environ
 
 
 def test_a_conf_that_is_not_marked_is_somebody_elses(here, cli):
@@ -72,12 +73,12 @@ def test_a_conf_that_is_not_marked_is_somebody_elses(here, cli):
 def test_in_a_clone_a_copy_is_one_of_ours(here, cli, monkeypatch):
     """There ./conf is what comes with rotctl: nothing in it is marked as the user's."""
     shutil.copytree(conf_dir(), here / "conf")
-    monkeypatch.setattr(listing, "conf_dir", lambda: here / "conf")
+    monkeypatch.setattr(config_folders, "__file__", str(here / "package/choices/here.py"))
     code, said, _ = cli("new", "behaviour", "my_roll", "--from", "reference_roll")
     assert (code, said) == (0, "conf/behaviour/my_roll.yaml\n")
-    assert not (here / "conf" / listing.MARK).exists()
+    assert not (here / "conf" / config_folders.MARK).exists()
     assert "my_roll" in listing.choices("behaviour")
-    assert listing.own_dir() is None
+    assert config_folders.own_dir() is None
 
 
 def test_what_editors_leave_beside_a_file_is_no_choice(here, cli):
@@ -93,7 +94,7 @@ def test_what_editors_leave_beside_a_file_is_no_choice(here, cli):
 def test_defaults_that_make_no_config_are_told(here, cli, defaults):
     folder = here / "conf" / "behaviour"
     folder.mkdir(parents=True)
-    (here / "conf" / listing.MARK).touch()
+    (here / "conf" / config_folders.MARK).touch()
     (folder / "bad.yaml").write_text(f"defaults: {defaults}\nname: bad\n")
     code, _, said = cli("show", "behaviour=bad")
     assert (code, said.count("\n")) == (2, 1)
@@ -220,7 +221,7 @@ def test_every_kind_can_be_begun(here):
     for kind in kinds():
         source = first.get(kind) or listing.choices(kind)[0]
         assert make(kind, "my_own", source).read_text()
-    with listing.own(here / "conf"):
+    with config_folders.own(here / "conf"):
         assert load_clip("my_own").name == "my_own"
         assert load_space("my_own")
         assert experiments.experiment("my_own").title
@@ -255,7 +256,7 @@ def test_a_report_is_the_fifth(here, monkeypatch):
 
 def test_of_two_choices_of_a_group_the_later_one_counts(here):
     make("start", "mine", "rest")
-    with listing.own(here / "conf"):
+    with config_folders.own(here / "conf"):
         assert load(["start=mine", "start=raised"]).start.name == "raised"
         assert load(["start=raised", "start=mine"]).start.name == "mine"
 
@@ -445,7 +446,7 @@ def test_a_file_that_is_wrong_is_no_matter_to_who_does_not_choose_it(
     path = here / "conf" / group / "aa.yaml"
     path.parent.mkdir(parents=True)
     path.write_text(text)
-    with listing.own(here / "conf"), pytest.raises(InputError) as error:
+    with config_folders.own(here / "conf"), pytest.raises(InputError) as error:
         build(load([*overrides, "seed=1"]))
     assert message in str(error.value)
     assert "aa" not in str(error.value)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from rotctl.choices.listing import conf_dir
+from rotctl.choices.config_folders import conf_dir
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.runs.scenario import build

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from sweep_cli import held_after, kill
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders
 from rotctl.cli.main import main
 from rotctl.config import loading
 from rotctl.errors import InputError, RotctlError
@@ -192,11 +192,10 @@ def test_the_result_is_a_config_choice_for_each_group(space, tmp_path, monkeypat
     assert "# base       behaviour=forward_roll_1 behaviour.speed=1.1\n" in text
     assert "# trials     8 in 2 generations, 2 runs of 0.5 s each\n" in text
     copied = tmp_path / "conf"
-    shutil.copytree(listing.conf_dir(), copied)
+    shutil.copytree(config_folders.conf_dir(), copied)
     for path in written:
         shutil.copy(path, copied / path.parent.name)
-    monkeypatch.setattr(listing, "conf_dir", lambda: copied)
-    monkeypatch.setattr(loading, "conf_dir", lambda: copied)
+    monkeypatch.setattr(config_folders, "__file__", str(tmp_path / "package/choices/here.py"))
     chosen = loading.load(["behaviour=small_tuned", "controller=small_tuned", "duration=0.25"])
     best = found.candidates[0].values
     assert chosen.behaviour.poses.a["knee"] == best["behaviour.poses.a.knee"]
@@ -212,7 +211,7 @@ def test_a_result_brings_what_its_behaviour_brings(whole, tmp_path):
     made = result.choices(replace(whole, search=steep))
     (tmp_path / "behaviour").mkdir()
     (tmp_path / "behaviour" / "small_tuned.yaml").write_text(made["behaviour"])
-    with listing.own(tmp_path):
+    with config_folders.own(tmp_path):
         chosen = loading.load(["behaviour=small_tuned"])
         assert chosen.terrain == loading.load(["behaviour=steep"]).terrain
         assert loading.load(["behaviour=small_tuned", "terrain=flat"]).terrain.name == "flat"
@@ -260,7 +259,7 @@ def test_what_is_printed_to_judge_a_result_can_be_pasted(whole, tmp_path):
     folder, mine = tmp_path / "a search", tmp_path / "my conf"
     written = result.write(whole, folder)
     (mine / "controller").mkdir(parents=True)
-    with listing.own(mine):
+    with config_folders.own(mine):
         copies = result.how_to_judge(whole, written, folder).splitlines()[1:-1]
         assert [line.count("mkdir") for line in copies] == [1, 0]
         for line in copies:

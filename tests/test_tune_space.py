@@ -6,7 +6,7 @@ import os
 import pytest
 import yaml
 
-from rotctl.choices.listing import conf_dir
+from rotctl.choices.config_folders import conf_dir
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.expressions.expression import NAMES

@@ -14,14 +14,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import files
-from rotctl.choices.listing import (
-    choices,
-    conf_dir,
-    content,
-    named_file,
-    require_plain,
-    shipped_files,
-)
+from rotctl.choices.config_folders import conf_dir
+from rotctl.choices.contents import content, require_plain
+from rotctl.choices.listing import choices, named_file, shipped_files
 from rotctl.errors import InputError
 from rotctl.settings import documents, plain
 

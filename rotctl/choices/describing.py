@@ -3,16 +3,15 @@
 from pathlib import Path
 
 from rotctl import files
+from rotctl.choices.config_folders import conf_dir, own_dir
+from rotctl.choices.contents import content
 from rotctl.choices.listing import (
     EXPERIMENTS,
-    conf_dir,
-    content,
     group_names,
     instead_of,
     misnamed,
     named_file,
     named_files,
-    own_dir,
     unfit,
 )
 from rotctl.errors import InputError

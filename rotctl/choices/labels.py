@@ -3,7 +3,8 @@
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from rotctl.choices.listing import choices, is_own, named_file
+from rotctl.choices.config_folders import is_own
+from rotctl.choices.listing import choices, named_file
 from rotctl.errors import InputError
 from rotctl.settings import plain
 

@@ -13,7 +13,8 @@ from hydra.core.override_parser.types import ChoiceSweep, Glob, Override, Overri
 from hydra.errors import HydraException
 
 from rotctl.choices.composing import MISSING, Assignment
-from rotctl.choices.listing import choices, conf_dir, instead_of
+from rotctl.choices.config_folders import conf_dir
+from rotctl.choices.listing import choices, instead_of
 from rotctl.errors import InputError
 from rotctl.settings.checking import brief, clip
 from rotctl.suggestion import instead_of_many

@@ -4,15 +4,13 @@ import re
 from pathlib import Path
 
 from rotctl import __version__, files
+from rotctl.choices.config_folders import MARK, is_shipped, own_dir
 from rotctl.choices.listing import (
-    MARK,
     NO_GROUPS,
     group_names,
     instead_of,
-    is_shipped,
     named_file,
     named_files,
-    own_dir,
     shipped_files,
     unfit,
 )

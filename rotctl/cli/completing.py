@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rotctl.choices import composing, listing
+from rotctl.choices import composing, config_folders, listing
 from rotctl.errors import RotctlError
 from rotctl.settings import plain
 
@@ -39,7 +39,7 @@ def candidates(words: list[str], commands: Commands) -> list[str]:
     folder, before = _own(given)
     name = next((word for word in before if word in commands), "")
     try:
-        with listing.own(folder):
+        with config_folders.own(folder):
             found = _in_command(name, commands[name], before, begun) if name else [*commands]
     except RotctlError:  # of a file or a folder; whoever runs the line is told
         return []
@@ -91,7 +91,7 @@ def _override(begun: str, before: list[str], name: str) -> Iterable[str]:
     if equals:
         return [f"{key}={choice}" for choice in _choices(key)]
     if begun.startswith("+"):
-        groups = {path.parent.name for path in listing.conf_dir().glob("*/*.yaml")}
+        groups = {path.parent.name for path in config_folders.conf_dir().glob("*/*.yaml")}
         added = [group for group in groups - _config(before).keys() if listing.choices(group)]
         return [f"+{group}=" for group in added] + [f"{EXPERIMENT}="] * (name == "sweep")
     return _keys(key, before)

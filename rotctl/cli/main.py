@@ -61,8 +61,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _commanded(arguments: argparse.Namespace) -> int:
     """Do what a command line says; its exit code."""
-    from rotctl.choices.listing import own  # reads YAML: who asks for help need not wait for it
-    from rotctl.choices.override_files import expanded
+    from rotctl.choices.config_folders import own
+    from rotctl.choices.override_files import expanded  # reads YAML, for which help need not wait
 
     if "overrides" in arguments:
         arguments.overrides = expanded(arguments.overrides)

@@ -12,7 +12,8 @@ from dataclasses import fields
 from typing import Any
 
 from rotctl.choices import composing, labels
-from rotctl.choices.listing import choices, usual
+from rotctl.choices.contents import usual
+from rotctl.choices.listing import choices
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
 from rotctl.settings import plain

@@ -7,7 +7,8 @@ from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.placing import Watch
 from rotctl.behaviours.staged.settings import StagedSettings
-from rotctl.choices.listing import content, shipped_files
+from rotctl.choices.contents import content
+from rotctl.choices.listing import shipped_files
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_id

@@ -13,15 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from rotctl.choices import composing, labels
 from rotctl.choices.composing import Assignment, simple
-from rotctl.choices.listing import (
-    choices,
-    conf_dir,
-    folders,
-    is_own,
-    named_file,
-    own_dir,
-    require_plain,
-)
+from rotctl.choices.config_folders import conf_dir, folders, is_own, own_dir
+from rotctl.choices.contents import require_plain
+from rotctl.choices.listing import choices, named_file
 from rotctl.config import chains, own_body
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError, LogError

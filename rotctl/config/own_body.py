@@ -14,7 +14,9 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.choices.composing import simple
-from rotctl.choices.listing import choices, content, is_own, named_file, shipped_files
+from rotctl.choices.config_folders import is_own
+from rotctl.choices.contents import content
+from rotctl.choices.listing import choices, named_file, shipped_files
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
 from rotctl.settings import plain

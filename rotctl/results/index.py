@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import files
-from rotctl.choices.listing import MOST_VALUES
+from rotctl.choices.contents import MOST_VALUES
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME
 from rotctl.log.outcome import plain_outcome, require_verdict

@@ -1,6 +1,7 @@
 """Which starts suit a roll, for messages about one that does not."""
 
-from rotctl.choices.listing import content, shipped_files
+from rotctl.choices.contents import content
+from rotctl.choices.listing import shipped_files
 
 
 def suited(roll_about: str) -> str:

@@ -8,8 +8,10 @@ import yaml
 
 from rotctl import files
 from rotctl.choices.composing import SELF
+from rotctl.choices.config_folders import conf_dir, own_dir
+from rotctl.choices.contents import content, usual
 from rotctl.choices.listing import choices as choices_of
-from rotctl.choices.listing import conf_dir, content, named_file, own_dir, usual
+from rotctl.choices.listing import named_file
 from rotctl.log import collect
 from rotctl.settings.plain import way
 from rotctl.tune.chart import plot, table

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from rotctl.choices import listing
+from rotctl.choices import config_folders, listing
 from rotctl.config.loading import load
 from rotctl.log import RunLog, write_run
 from rotctl.log.schema import MODEL_PATH, WRITER_ATTRIBUTES
@@ -72,8 +72,8 @@ def make(folder, whole=True):
         experiment=EXPERIMENT,
         space=SPACE,
         claims=CLAIMS,
-        clip=(listing.conf_dir() / "motion" / "forward_roll.yaml").read_text(),
-        keys=(listing.conf_dir() / "motion" / "keys" / "forward_roll.yaml").read_text(),
+        clip=(config_folders.conf_dir() / "motion" / "forward_roll.yaml").read_text(),
+        keys=(config_folders.conf_dir() / "motion" / "keys" / "forward_roll.yaml").read_text(),
         configs=[(overrides, to_dict(load(overrides))) for overrides in chosen],
     )
     if whole:

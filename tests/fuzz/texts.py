@@ -6,7 +6,7 @@ import yaml
 
 from fuzz.case import Case, other
 from fuzz.nasty import changed, dumped, mangled
-from rotctl.choices import listing
+from rotctl.choices import config_folders, listing
 
 
 def space(rng, samples, here):
@@ -51,7 +51,7 @@ def capture(rng, samples, here):
 
 
 def conf(rng, samples, here):
-    shutil.copytree(listing.conf_dir(), here / "conf")
+    shutil.copytree(config_folders.conf_dir(), here / "conf")
     groups = [here / "conf", *(here / "conf" / name for name in listing.group_names())]
     path = rng.choice(sorted(rng.choice(groups).glob("*.yaml")))
     _text_file(rng, path, path.read_text(), here)

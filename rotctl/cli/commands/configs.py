@@ -61,7 +61,8 @@ def list_choices(arguments: argparse.Namespace) -> int:
 
 
 def _print_choices(folder: str, choices: Mapping[str, str]) -> None:
-    from rotctl.choices.listing import is_own, misnamed, named_files
+    from rotctl.choices.config_folders import is_own
+    from rotctl.choices.listing import misnamed, named_files
 
     width = max(map(len, choices))
     places = misnamed(folder) | named_files(folder)
