@@ -16,7 +16,7 @@ from rotctl.choices.composing import MISSING, Assignment
 from rotctl.choices.config_folders import conf_dir
 from rotctl.choices.listing import choices, instead_of
 from rotctl.errors import InputError
-from rotctl.settings.checking import brief, clip
+from rotctl.settings.complaints import brief, clip
 from rotctl.suggestion import instead_of_many
 
 LONGEST = 10_000  # characters; Hydra's parser takes seconds for a megabyte

@@ -17,7 +17,7 @@ from rotctl.choices.listing import choices
 from rotctl.control.settings import Gains
 from rotctl.errors import InputError
 from rotctl.settings import plain
-from rotctl.settings.checking import brief, clip
+from rotctl.settings.complaints import brief, clip
 from rotctl.settings.fields import MOST_PARTS
 
 KIND, SAID = "chain", "said"

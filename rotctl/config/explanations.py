@@ -14,7 +14,7 @@ from rotctl.choices.listing import choices
 from rotctl.choices.overrides import is_choice
 from rotctl.config.schema import check
 from rotctl.errors import InputError
-from rotctl.settings.checking import brief, clip, unknown_key
+from rotctl.settings.complaints import brief, clip, unknown_key
 from rotctl.settings.plain import NOTHING, Way, dotted, find, keys_under, member, put, way
 
 PARTS = (("behaviour", "parts"), ("criteria", "parts"))  # of a chain

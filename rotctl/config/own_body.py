@@ -20,7 +20,8 @@ from rotctl.choices.listing import choices, named_file, shipped_files
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
 from rotctl.settings import plain
-from rotctl.settings.checking import checked, unknown_key
+from rotctl.settings.checking import checked
+from rotctl.settings.complaints import unknown_key
 from rotctl.settings.fields import STRICT
 
 GROUP = "character"

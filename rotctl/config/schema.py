@@ -19,7 +19,8 @@ from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
 from rotctl.metrics.criteria.judge import Criteria
-from rotctl.settings.checking import brief, checked, clip
+from rotctl.settings.checking import checked
+from rotctl.settings.complaints import brief, clip
 from rotctl.settings.documents import UNPRINTABLE
 from rotctl.settings.fields import STRICT, Positive
 from rotctl.settings.plain import Way, dotted, leaves

@@ -13,7 +13,8 @@ from rotctl.mechanics.flesh import Flesh
 from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
 from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
 from rotctl.mechanics.terrain.ground import LEAST_FRICTION, MOST_FRICTION
-from rotctl.settings.checking import brief, checked
+from rotctl.settings.checking import checked
+from rotctl.settings.complaints import brief
 from rotctl.settings.fields import ends
 from rotctl.settings.writing import to_dict
 

@@ -17,7 +17,7 @@ from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.onset import Onset, Phase, Time
-from rotctl.settings.checking import brief
+from rotctl.settings.complaints import brief
 from rotctl.settings.fields import STRICT, Drawn, ends
 
 HEAVIEST = 1000.0  # [kg] that a body may take up

@@ -13,7 +13,7 @@ from rotctl import files
 from rotctl.choices.listing import EXPERIMENTS, instead_of, named_file, named_files
 from rotctl.errors import InputError
 from rotctl.metrics.claims import Claim, Where
-from rotctl.settings import checking, documents
+from rotctl.settings import checking, complaints, documents
 from rotctl.settings.fields import STRICT
 from rotctl.suggestion import instead
 
@@ -117,7 +117,7 @@ def named(overrides: list[str]) -> str:
     """
     for override in overrides:
         if override.startswith(PREFIX.removeprefix("+")):
-            shown = checking.clip(override)
+            shown = complaints.clip(override)
             raise InputError(f"{shown}: write +{shown}")
     found = [o.removeprefix(PREFIX) for o in overrides if o.startswith(PREFIX)]
     if len(found) > 1:

@@ -15,7 +15,7 @@ from rotctl.errors import InputError, LogError
 from rotctl.log import RunLog
 from rotctl.mechanics.model import Model
 from rotctl.runs.scenario import model_of
-from rotctl.settings.checking import brief
+from rotctl.settings.complaints import brief
 from rotctl.simulation.clearance import clearance
 
 LONGEST = 1e4  # [s] no run is as long

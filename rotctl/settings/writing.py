@@ -12,7 +12,7 @@ import yaml
 
 from rotctl.caching import kept
 from rotctl.errors import InputError
-from rotctl.settings.checking import unknown_key
+from rotctl.settings.complaints import unknown_key
 from rotctl.settings.fields import SPARSE
 from rotctl.settings.plain import NOTHING, dotted, keys_under, member, way
 

@@ -18,7 +18,7 @@ from rotctl.metrics.expressions.expression import Expression
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import TAKEN, Table, tabulated
 from rotctl.runs.summary import Summary, judged_again
-from rotctl.settings.checking import unknown_key
+from rotctl.settings.complaints import unknown_key
 from rotctl.settings.plain import NOTHING, Way, exchanged, way
 from rotctl.sweep.engines import Engine, Failure
 

@@ -16,7 +16,7 @@ from rotctl.control.settings import Gains
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.motion import RollAbout
-from rotctl.settings.checking import clip
+from rotctl.settings.complaints import clip
 from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Positive
 
 LEAST_TURNS = 2.0  # [rev] of a roll that follows another part

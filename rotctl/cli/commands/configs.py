@@ -32,7 +32,7 @@ def list_choices(arguments: argparse.Namespace) -> int:
     """List config groups and their choices."""
     from rotctl.choices.describing import described, groups, strays
     from rotctl.choices.listing import EXPERIMENTS
-    from rotctl.settings.checking import brief
+    from rotctl.settings.complaints import brief
     from rotctl.suggestion import instead, meant
 
     titles = {
