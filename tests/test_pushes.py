@@ -17,7 +17,8 @@ from rotctl.metrics.criteria.judge import judge
 from rotctl.report.site import pushes
 from rotctl.report.site.charts import charts
 from rotctl.report.site.grid import grid
-from rotctl.results.groups import grouped, markdown
+from rotctl.results.group_table import markdown
+from rotctl.results.groups import grouped
 from rotctl.results.table import Table
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build

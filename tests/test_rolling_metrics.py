@@ -16,7 +16,7 @@ from rotctl.metrics.criteria.rolling import (
 from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.quantile import median, percentile
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about
-from rotctl.results.groups import OF_ROLLS_IN_FILES_ONLY
+from rotctl.results.group_table import OF_ROLLS_IN_FILES_ONLY
 
 PERIOD = 1.0 / 60.0
 CRITERIA = RollingCriteria(

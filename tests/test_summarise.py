@@ -18,7 +18,8 @@ from rotctl.log import SCHEMA, RunLog, encode_run
 from rotctl.metrics.rates import wilson
 from rotctl.results import index
 from rotctl.results.code import code_version
-from rotctl.results.groups import grouped, markdown
+from rotctl.results.group_table import markdown
+from rotctl.results.groups import grouped
 from rotctl.results.lines import lines
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.stored_runs import DONE, MISSING, StoredRun, stored_runs

@@ -146,7 +146,8 @@ def judge(arguments: argparse.Namespace) -> int:
 
     from rotctl import files
     from rotctl.metrics.expressions.expression import file_of_metrics, read_all
-    from rotctl.results.groups import grouped, markdown
+    from rotctl.results.group_table import markdown
+    from rotctl.results.groups import grouped
     from rotctl.sweep.judging import criteria, judge
     from rotctl.sweep.workers import make_engine
 
@@ -201,7 +202,8 @@ def add_summarise(commands: Commands) -> None:
 
 def summarise(arguments: argparse.Namespace) -> int:
     """Make tables of the runs below a folder."""
-    from rotctl.results.groups import grouped, markdown, written
+    from rotctl.results.group_table import markdown, written
+    from rotctl.results.groups import grouped
     from rotctl.results.table import table
 
     found = table(arguments.folder)

@@ -7,7 +7,8 @@ from typing import Any
 import pandas as pd
 
 from rotctl.report.site.words import OFTEN, values
-from rotctl.results.groups import IN_FILES_ONLY, Groups, grouped
+from rotctl.results.group_table import IN_FILES_ONLY
+from rotctl.results.groups import Groups, grouped
 from rotctl.results.table import Table
 
 FEWEST = 3  # different numbers that make an axis
