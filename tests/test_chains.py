@@ -9,7 +9,7 @@ from here import swept
 
 from rotctl.behaviours.staged.conditions import After
 from rotctl.choices import config_folders
-from rotctl.cli.wording import readable
+from rotctl.cli.run_wording import readable
 from rotctl.config.chains import composed
 from rotctl.config.identity import run_id
 from rotctl.config.loading import load

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rotctl.cli.wording import readable
+from rotctl.cli.run_wording import readable
 from rotctl.config.loading import load
 from rotctl.metrics.criteria.judge import settling
 from rotctl.metrics.pace import measure, off

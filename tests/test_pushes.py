@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rotctl.cli.wording import readable
+from rotctl.cli.run_wording import readable
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics.onset import Onset

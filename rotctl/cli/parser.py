@@ -8,7 +8,18 @@ from pathlib import Path, PurePath
 from typing import Any, NoReturn
 
 from rotctl import __version__
-from rotctl.cli.commands import clips, completion, configs, folders, logs, runs, searches, studies
+from rotctl.cli.commands import (
+    clips,
+    completion,
+    configs,
+    folders,
+    logs,
+    pictures,
+    runs,
+    searches,
+    studies,
+    sweeps,
+)
 from rotctl.cli.wording import one_line
 from rotctl.errors import bounded
 from rotctl.suggestion import instead, meant
@@ -45,7 +56,7 @@ repeat (rotctl verify), or a claim got worse (rotctl report --against), 2 bad in
 
 # In the order of the help.
 COMMANDS = (
-    *(runs.add_run, logs.add_render, logs.add_replay, logs.add_plot, logs.add_export),
+    *(runs.add_run, pictures.add_render, pictures.add_replay, pictures.add_plot, logs.add_export),
     *(
         configs.add_list,
         configs.add_show,
@@ -55,7 +66,7 @@ COMMANDS = (
         folders.add_diff,
     ),
     *(logs.add_inspect, logs.add_verify, runs.add_bench),
-    *(studies.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
+    *(sweeps.add_sweep, studies.add_judge, studies.add_summarise, studies.add_report),
     *(searches.add_tune, clips.add_import, clips.add_author, clips.add_preview),
     completion.add_completion,
 )

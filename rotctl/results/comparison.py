@@ -1,7 +1,7 @@
 """Two runs or two sweeps side by side: where their configs differ, and their figures."""
 
 import json
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -38,13 +38,16 @@ class Side:
     mixed: Collection[str] = ()
 
 
-def compared(one: Path, other: Path) -> str:
+def compared(one: Path, other: Path, opened: Callable[[Path], RunLog]) -> str:
     """A table of what differs between two runs, or two sweeps.
+
+    Args:
+        opened: the log of a path.
 
     Raises:
         InputError: one is neither, or only one is a sweep.
     """
-    sides = (_side(one), _side(other))
+    sides = (_side(one, opened), _side(other, opened))
     if sides[0].sweep != sides[1].sweep:
         raise InputError(f"{one} and {other}: a run and a sweep; give two of a kind")
     mixed = {group for side in sides for group in side.mixed}
@@ -58,10 +61,10 @@ def compared(one: Path, other: Path) -> str:
     )
 
 
-def _side(path: Path) -> Side:
+def _side(path: Path, opened: Callable[[Path], RunLog]) -> Side:
     log = path / LOG_NAME if path.is_dir() else path
     if log.is_file():
-        found = RunLog.open(log)
+        found = opened(log)
         return Side(False, _flat([config_of(found.config_yaml)]), _figures(found.outcome))
     runs, notes = stored_runs(path)
     done = [run for run in runs if run.status == DONE]

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from rotctl.cli.commands.arguments import (
     LOG_HELP,
-    LOG_NAME,
     RUNS,
     Commands,
     opened_log,
@@ -104,7 +103,7 @@ def inspect_model(arguments: argparse.Namespace) -> int:
     from rotctl import files
     from rotctl.adopting import adopt
     from rotctl.choices.own_folder import put, require_own_name
-    from rotctl.cli.wording import adopted
+    from rotctl.cli.character_wording import adopted
 
     out = arguments.out
     if out is not None:
@@ -175,7 +174,5 @@ def diff(arguments: argparse.Namespace) -> int:
     for path in both:
         if not path.exists():
             raise InputError(f"{path}: no such file or folder")
-        if path.is_file() or (path / LOG_NAME).is_file():
-            opened_log(path)  # for what it says of one that was changed
-    print(printable(compared(*both)))
+    print(printable(compared(*both, opened_log)))
     return 0

@@ -13,7 +13,8 @@ from rotctl.cli.commands.arguments import (
     opened_log,
     path_name,
 )
-from rotctl.cli.wording import one_line, readable
+from rotctl.cli.run_wording import readable
+from rotctl.cli.wording import one_line
 from rotctl.errors import InputError
 
 if TYPE_CHECKING:
