@@ -21,6 +21,7 @@ from rotctl.log import RunLog
 from rotctl.sweep import cluster as cluster_module
 from rotctl.sweep.apart import Death, apart
 from rotctl.sweep.engines import Failure
+from rotctl.sweep.task_size import Pace
 from rotctl.sweep.workers import make_engine
 
 pytest.importorskip("distributed", reason="Dask is not installed: pip install 'rotctl[cluster]'")
@@ -184,7 +185,7 @@ def test_short_items_go_together_and_one_that_kills_takes_no_other_with_it(engin
     ],
 )
 def test_how_many_items_make_a_task(done, seconds, left, size):
-    assert cluster_module.Pace(done, seconds).size(left) == size
+    assert Pace(done, seconds).size(left) == size
 
 
 def test_the_runs_are_the_same_as_they_are_here(cluster, tmp_path):

@@ -170,9 +170,9 @@ def diff(arguments: argparse.Namespace) -> int:
     """Compare runs or sweeps."""
     from rotctl.results.comparison import compared
 
-    both = [run_folder(path) for path in (arguments.one, arguments.other)]
-    for path in both:
+    one, other = run_folder(arguments.one), run_folder(arguments.other)
+    for path in (one, other):
         if not path.exists():
             raise InputError(f"{path}: no such file or folder")
-    print(printable(compared(*both, opened_log)))
+    print(printable(compared(one, other, opened_log)))
     return 0
