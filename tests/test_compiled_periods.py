@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rotctl.behaviours.rolling.compiled import PACE
-from rotctl.behaviours.rolling.pacing import PaceSettings
+from rotctl.behaviours.rolling.pace_settings import PaceSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.config.loading import load
 from rotctl.control import compiled

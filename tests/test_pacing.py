@@ -7,7 +7,8 @@ from math import tau
 import numpy as np
 import pytest
 
-from rotctl.behaviours.rolling.pacing import SLIP, Clock, Pace, PaceSettings
+from rotctl.behaviours.rolling.pace_settings import SLIP, PaceSettings
+from rotctl.behaviours.rolling.pacing import Clock, Pace
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.judge import judge

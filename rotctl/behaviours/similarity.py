@@ -19,7 +19,7 @@ from rotctl.behaviours.chain.ways import OnFeet, Rolls, Way
 from rotctl.behaviours.rolling.alighting import AlightingSettings
 from rotctl.behaviours.rolling.catching import CatchSettings
 from rotctl.behaviours.rolling.finishing import FinishSettings
-from rotctl.behaviours.rolling.pacing import PaceSettings
+from rotctl.behaviours.rolling.pace_settings import PaceSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.conditions import After, Leant, Leaves, Low, Near, Over, Passed, Still
 from rotctl.behaviours.staged.following import RiseSettings

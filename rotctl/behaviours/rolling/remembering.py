@@ -11,7 +11,8 @@ from rotctl.behaviours.facing import UP
 from rotctl.behaviours.rolling import obliqueness
 from rotctl.behaviours.rolling.bearing import Bearing, Bearings
 from rotctl.behaviours.rolling.course import Course, Going
-from rotctl.behaviours.rolling.pacing import SLIP, Clock, Pace
+from rotctl.behaviours.rolling.pace_settings import SLIP
+from rotctl.behaviours.rolling.pacing import Clock, Pace
 from rotctl.maths.rotations import Array, about_up, dot, rotate
 from rotctl.mechanics import excursion
 from rotctl.mechanics.excursion import Excursion, ExcursionSettings

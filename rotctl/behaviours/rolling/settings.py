@@ -12,7 +12,7 @@ from rotctl.behaviours.rolling.course import CourseSettings
 from rotctl.behaviours.rolling.finishing import AHEAD, Finishing, FinishSettings
 from rotctl.behaviours.rolling.lifting import Lift
 from rotctl.behaviours.rolling.obliqueness import Oblique
-from rotctl.behaviours.rolling.pacing import Halts, PaceSettings
+from rotctl.behaviours.rolling.pace_settings import Halts, PaceSettings
 from rotctl.behaviours.rolling.rolling import Rolling
 from rotctl.behaviours.staged.stages import kinds_of
 from rotctl.control import ControllerSettings
