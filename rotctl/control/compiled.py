@@ -5,15 +5,11 @@ set of our own, to the same minimum: `native/active_set.c`.
 """
 
 import ctypes
-from itertools import accumulate
-from math import prod
-from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-from rotctl.control.condensed import LIMIT_SLACK
+from rotctl.control import handover
 from rotctl.control.decision import Decision
 from rotctl.control.kinds import KINDS
 from rotctl.control.settings import ContactGains, ControllerSettings, PoseGains
@@ -22,11 +18,9 @@ from rotctl.control.task import TASK, Command, Tasks
 from rotctl.errors import RotctlError
 from rotctl.mechanics.contacts import Contacts
 from rotctl.mechanics.model import Model
-from rotctl.mechanics.momentum import Momentum
 from rotctl.mechanics.state import State
 from rotctl.native import functions, library
 from rotctl.native.layout import constant, structure
-from rotctl.qp.scaling import DIAGONAL, TOLERANCE
 
 SUPERVISORS = {
     "as_written": constant("AS_WRITTEN"),
@@ -35,23 +29,7 @@ SUPERVISORS = {
 }
 FAILED, TASKS = constant("FAILED"), constant("TASKS")
 
-_pointer = ctypes.c_void_p
 
-
-# Names and shapes of what a reading begins with.
-_MOMENTUM = {
-    **dict.fromkeys(("com", "com_velocity", "linear", "angular"), (3,)),
-    "inertia": (3, 3),
-    "angular_velocity": (3,),
-    "root_rotation": (3, 3),
-    "root_offset": (3,),
-}
-_MOMENTUM_SIZE = sum(map(prod, _MOMENTUM.values()))
-_ENDS = list(accumulate(map(prod, _MOMENTUM.values())))
-_CUTS = [
-    (slice(begin, end), shape if len(shape) > 1 else None)
-    for begin, end, shape in zip([0, *_ENDS], _ENDS, _MOMENTUM.values(), strict=False)
-]
 _READ = ("trunk_axes", "position", "frame", "friction", "gap", "body", "row")
 
 
@@ -79,7 +57,7 @@ class CompiledStep:
         found = library()
         if found is None:
             raise RotctlError("the compiled control step is not built")
-        self._library = _prepared(found)
+        self._library = handover.prepared(found)
         self._scratch = mujoco.MjData(model.mj)
         self._kept = (model, model.torque_limit, model.armature, model.joint_range)
         self._reading, self._command, self._answer = (
@@ -95,11 +73,11 @@ class CompiledStep:
         self._command.pose_a, self._command.pose_b = (p.ctypes.data for p in self._poses)
         self._command.held_out = self._held_out.ctypes.data
         # By their numbers: where C has the function of that name, and whether over qddot.
-        addresses = [_address(found, f"rotctl_kind_{name}") for name in KINDS]
+        addresses = [handover.address(found, f"rotctl_kind_{name}") for name in KINDS]
         self.lacks = [name for name, at in zip(KINDS, addresses, strict=True) if at is None]
-        self._kinds = (_pointer * len(KINDS))(*addresses)
+        self._kinds = (handover.POINTER * len(KINDS))(*addresses)
         self._over_motion = (ctypes.c_ubyte * len(KINDS))(*(not k.momentum for k in KINDS.values()))
-        constants = _constants(model, settings)
+        constants = handover.constants(model, settings)
         self._self = found.rotctl_new(
             model.mj._address,
             self._scratch._address,
@@ -113,13 +91,13 @@ class CompiledStep:
         self._pointers = [
             ctypes.addressof(part) for part in (self._reading, self._command, self._answer)
         ]
-        self._momentum = _block(self._reading, "com", _MOMENTUM_SIZE)
-        self._read = {name: _view(self._reading, name) for name in _READ}
-        self._forward = _view(self._command, "forward")
-        self._force = _view(self._answer, "force")
-        self._used = _view(self._answer, "used").view(bool)
-        self._rates = _block(self._answer, "rates_wanted", 2, 6)
-        self._told = _block(self._answer, "error", 3, TASKS, 3)
+        self._momentum = handover.block(self._reading, "com", handover.MOMENTUM_SIZE)
+        self._read = {name: handover.view(self._reading, name) for name in _READ}
+        self._forward = handover.view(self._command, "forward")
+        self._force = handover.view(self._answer, "force")
+        self._used = handover.view(self._answer, "used").view(bool)
+        self._rates = handover.block(self._answer, "rates_wanted", 2, 6)
+        self._told = handover.block(self._answer, "error", 3, TASKS, 3)
         self._gains: tuple[PoseGains, ContactGains, Thresholds] | None = None
         self._last: State | None = None
 
@@ -140,7 +118,7 @@ class CompiledStep:
             position=data.qpos.copy(),
             velocity=data.qvel.copy(),
             bias=self._bias.copy(),
-            momentum=_momentum(self._momentum.copy()),
+            momentum=handover.momentum(self._momentum.copy()),
             contacts=Contacts(
                 body=read["body"][:m].copy(),
                 position=read["position"][:m].copy(),
@@ -228,65 +206,3 @@ class CompiledStep:
         given.contact_centripetal = contact.centripetal
         given.threshold_force, given.threshold_torque = thresholds.force, thresholds.torque
         given.threshold_separation = thresholds.separation
-
-
-def _prepared(found: ctypes.CDLL) -> ctypes.CDLL:
-    """The library with its signatures, if Python and C agree on what they hand each other."""
-    theirs, ours = structure("Task"), dict(TASK.fields or {})
-    places = [(name, getattr(theirs, name).offset) for name, *_ in theirs._fields_]
-    if places != [(name, field[1]) for name, field in ours.items()]:
-        raise RotctlError("native/layout.h and rotctl.control.task differ in what a task is")
-    found.rotctl_new.restype = _pointer
-    found.rotctl_new.argtypes = [_pointer] * 6
-    found.rotctl_free.argtypes = [_pointer]
-    found.rotctl_free.restype = None
-    found.rotctl_read.argtypes = [_pointer] * 3
-    found.rotctl_decide.argtypes = [_pointer] * 5
-    return found
-
-
-def _address(found: ctypes.CDLL, name: str) -> int | None:
-    try:
-        return ctypes.cast(getattr(found, name), _pointer).value
-    except AttributeError:
-        return None
-
-
-def _view(shared: ctypes.Structure, name: str) -> NDArray[Any]:
-    return np.ctypeslib.as_array(getattr(shared, name))
-
-
-def _block(shared: ctypes.Structure, first: str, *shape: int) -> NDArray[np.float64]:
-    """Several members in one array from the `first` on: one copy is cheaper than one of each."""
-    start = getattr(type(shared), first).offset
-    block = np.frombuffer(shared, float, prod(shape), start)  # type: ignore[call-overload]
-    return np.asarray(block).reshape(shape)
-
-
-def _momentum(block: NDArray[np.float64]) -> Momentum:
-    """Cut from one block, which is cheaper than a copy each."""
-    return Momentum(*[block[cut].reshape(shape) if shape else block[cut] for cut, shape in _CUTS])
-
-
-def _constants(model: Model, settings: ControllerSettings) -> ctypes.Structure:
-    constants = structure("Constants")(
-        period=1.0 / settings.rate,
-        friction=settings.friction,
-        diagonal=DIAGONAL,
-        tolerance=TOLERANCE,
-        slack=LIMIT_SLACK,
-        touch=model.touch,
-        look_ahead=model.look_ahead,
-        merge_distance=settings.merging.distance,
-        merge_parallel=settings.merging.parallel,
-        mass=model.mass,
-        sees_disturbance=settings.sees_disturbance,
-        trunk_count=len(model.trunk),
-        torque_limit=model.torque_limit.ctypes.data,
-        armature=model.armature.ctypes.data,
-        joint_range=model.joint_range.ctypes.data,
-    )
-    constants.gravity[:] = model.gravity
-    for i, (body, weight) in enumerate(zip(model.trunk, model.trunk_weights[:, 0], strict=True)):
-        constants.trunk[i], constants.trunk_weight[i] = int(body), float(weight)
-    return constants
