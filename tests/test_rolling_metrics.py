@@ -8,13 +8,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from rotctl.metrics.criteria.rolling import (
-    OF_REVOLUTIONS,
     RollingCriteria,
     RollingMetrics,
     measure,
 )
 from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.quantile import median, percentile
+from rotctl.metrics.revolutions import OF_REVOLUTIONS
 from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about
 from rotctl.results.group_table import OF_ROLLS_IN_FILES_ONLY
 

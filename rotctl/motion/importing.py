@@ -1,13 +1,12 @@
 """A captured motion to a clip: read, retarget, cut out the roll, turn it to +x, close it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from math import tau
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
@@ -16,10 +15,11 @@ from rotctl.mechanics.model import Model
 from rotctl.motion.capture import Capture
 from rotctl.motion.clip import Clip
 from rotctl.motion.closing import Closed, close
+from rotctl.motion.cutting import cut, part_of, within
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.finding import find_roll, roll_kind, rolling_axis
 from rotctl.motion.flight import Flight, flights
-from rotctl.motion.glance import has_false_start, stood_up, stretches, up_axis
+from rotctl.motion.glance import has_false_start, stood_up, up_axis
 from rotctl.motion.ground import centres
 from rotctl.motion.landmarks import Landmarks, find_landmarks
 from rotctl.motion.mirror import mirrored, symmetric
@@ -27,11 +27,6 @@ from rotctl.motion.reading import NOTHING, Wishes
 from rotctl.motion.retarget import Retargeted, retarget
 from rotctl.motion.turning import Motion, qpos, rotation_between_postures
 from rotctl.motion.writing import make_clip
-
-LONGEST = 60.0  # [s] of capture that are fitted
-FEWEST = 5  # frames of a cycle
-FINE = 1.0 / 120.0  # [s] a slower capture is interpolated to that
-BESIDE = 0.5  # [s] what is fitted on either side of a given cycle
 
 
 @dataclass(frozen=True)
@@ -113,19 +108,8 @@ def import_motion(
         marks = stood_up(marks, up)
     time, false_start = capture.time, has_false_start(marks)
     if false_start:
-        time, marks = time[1:], _part(marks, slice(1, None))
-    if cycle:
-        parts = [_around(cycle, time)]
-    else:
-        parts = stretches(path, time, marks)
-        lasts = sum(float(time[part][-1] - time[part][0]) for part in parts)
-        if lasts > LONGEST:
-            raise InputError(
-                f"{path}: the body turns round in {lasts:.0f} s of it, a roll is looked for in "
-                f"{LONGEST:g} s at most; give --cycle START:END [s]"
-            )
-    fine = [_fine(time[part], _part(marks, part)) for part in parts]
-    found, flown = _best(model, fine, cycle, progress)
+        time, marks = time[1:], part_of(marks, slice(1, None))
+    found, flown = _best(model, cut(path, time, marks, cycle), cycle, progress)
     time, fitted = found.time, found.fitted
     motion, root, turns = fitted.motion, fitted.root, found.turns
     first, last = found.first, found.last
@@ -193,7 +177,7 @@ def _best(
         flown += flights(model, time, _positions(model, fitted.motion, fitted.root), fitted.leg)
         try:
             cost, first, last = (
-                (0.0, *_within(cycle, time)) if cycle else find_roll(time, fitted.motion, turns)
+                (0.0, *within(cycle, time)) if cycle else find_roll(time, fitted.motion, turns)
             )
         except InputError as error:
             complaint = complaint or error
@@ -210,39 +194,6 @@ def _told(
     progress: Callable[[int, int], object], before: int, whole: int, done: int, _: int
 ) -> None:
     progress(before + done, whole)
-
-
-def _around(cycle: tuple[float, float], time: Array) -> slice:
-    """The frames of a given cycle, and some beside it, so that the fit does not begin in it."""
-    start, end = cycle
-    if not 0.0 <= start < end <= time[-1] + 1e-6:
-        raise InputError(
-            f"--cycle={start:g}:{end:g}: valid: 0 to {time[-1]:.3f} s, START before END"
-        )
-    first, last = _within(cycle, time)
-    if last - first + 1 < FEWEST:
-        raise InputError(f"--cycle={start:g}:{end:g}: {last - first + 1} frames, at least {FEWEST}")
-    near = np.flatnonzero((time >= start - BESIDE) & (time <= end + BESIDE))
-    return slice(int(near[0]), int(near[-1]) + 1)
-
-
-def _within(cycle: tuple[float, float], time: Array) -> tuple[int, int]:
-    """First and last frame of a cycle."""
-    first, after = np.searchsorted(time, [cycle[0] - 1e-6, cycle[1] + 1e-6])
-    return int(first), int(after) - 1
-
-
-def _part(marks: Landmarks, part: slice) -> Landmarks:
-    return replace(marks, points={name: at[part] for name, at in marks.points.items()})
-
-
-def _fine(time: Array, marks: Landmarks) -> tuple[Array, Landmarks]:
-    """The landmarks at `FINE` steps, where the capture's are longer."""
-    if np.median(np.diff(time)) <= 1.01 * FINE:
-        return time, marks
-    fine = np.linspace(time[0], time[-1], 1 + round((time[-1] - time[0]) / FINE))
-    points = {name: CubicSpline(time, at)(fine) for name, at in marks.points.items()}
-    return fine, replace(marks, points=points)
 
 
 def _positions(model: Model, motion: Motion, root: Array) -> Array:

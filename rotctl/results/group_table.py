@@ -9,12 +9,12 @@ import pandas as pd
 
 from rotctl import files
 from rotctl.metrics import appearance, pace, peaks
-from rotctl.metrics.criteria import rolling
+from rotctl.metrics.revolutions import OF_REVOLUTIONS
 from rotctl.results.groups import QUARTILES, Groups, shown
 
 # Too many for a table that people read: files have them, and a failure names its own.
 OF_ROLLS_IN_FILES_ONLY = (
-    *rolling.OF_REVOLUTIONS,
+    *OF_REVOLUTIONS,
     "setback",
     "height_least",
     "height_most",

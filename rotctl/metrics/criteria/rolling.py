@@ -11,8 +11,9 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.metrics.columns import Arrays, Column, along_way, floats, in_frame, solver_failures
 from rotctl.metrics.halts import Halts, going, unkept
 from rotctl.metrics.quantile import median, percentile
+from rotctl.metrics.revolutions import worst_revolutions
 from rotctl.metrics.smoothness import jerk, recovery, use_of_contacts
-from rotctl.metrics.turning import longest_stall, revolutions, setback, turned_about, within
+from rotctl.metrics.turning import longest_stall, setback
 from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive, Range
 
 COLUMNS = (
@@ -166,14 +167,6 @@ class RollingMetrics:
     solver_failures: int
 
 
-OF_REVOLUTIONS = (
-    "slowest_revolution",
-    "flight_turn",
-    "trunk_turn",
-    "axis_error",
-    "travel_least",
-    "travel_most",
-)
 _ZERO_AT_FIRST = (
     "duration",
     "revolutions",
@@ -248,37 +241,8 @@ def measure(
         **recovery(log, criteria, progress, axis, period, whole),
         torque_p99_fraction=percentile(fraction, 99),
         solver_failures=solver_failures(log),
-        **_worst_revolutions(log, direction, progress, axis, period, rolls),
+        **worst_revolutions(log, direction, progress, axis, period, rolls),
     )
-
-
-def _worst_revolutions(
-    log: Arrays,
-    direction: float,
-    progress: NDArray[np.float64],
-    axis: NDArray[np.float64],
-    period: float,
-    rolls: NDArray[np.bool_],
-) -> dict[str, Any]:
-    """The members of `RollingMetrics` about revolutions, which last for as many rows of `rolls`."""
-    first, last = revolutions(progress)
-    if not len(last):
-        return dict.fromkeys(OF_REVOLUTIONS, math.nan)
-    x = direction * along_way(log)[:, 0]
-    about = floats(log, "trajectory/trunk_axis")
-    turn = direction * turned_about(about, floats(log, "trajectory/qpos")[:, 3:7])
-    in_air = ~floats(log, "contacts/ground_force").any(axis=1)
-    in_flight = np.where(in_air, np.diff(progress, append=progress[-1]), 0.0)
-    along = float((within(first, last, axis[:, 1]) / (last - first)).min())
-    travel = x[last] - x[first]
-    return {
-        "slowest_revolution": float(within(first, last, rolls.astype(np.float64)).max() * period),
-        "flight_turn": float(within(first, last, in_flight).max()),
-        "trunk_turn": float((turn[last] - turn[first]).min()),
-        "axis_error": math.degrees(math.acos(min(max(along, -1.0), 1.0))),
-        "travel_least": float(travel.min()),
-        "travel_most": float(travel.max()),
-    }
 
 
 def _median_angle(degrees: NDArray[np.float64]) -> float:
