@@ -20,7 +20,8 @@ from rotctl.metrics.criteria import judge as metrics
 from rotctl.results.index import read
 from rotctl.runs.run import make, run
 from rotctl.runs.scenario import model_of
-from rotctl.sweep.judging import criteria, judge
+from rotctl.sweep.criteria import criteria
+from rotctl.sweep.judging import judge
 from rotctl.sweep.plan import planned
 from rotctl.sweep.points import points
 

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rotctl.log.attributes import write_attribute
+from rotctl.log.conformity import check_layout
 from rotctl.log.image import Image, place_of
 from rotctl.log.scales import coordinates, write_scales
-from rotctl.log.schema import GROUPS, SCHEMA, check_layout
+from rotctl.log.schema import GROUPS, SCHEMA
 
 _CHUNK_BYTES = 2**20
 _CHUNK_SLOTS = 16  # of contacts: a roll has hardly ever more, and what is empty is not stored

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from rotctl.errors import LogError
 from rotctl.log import untrusted
+from rotctl.log.conformity import check_dataset, check_layout
 from rotctl.log.digest import content_sha256, simulated
 from rotctl.log.outcome import outcome_of
 from rotctl.log.scales import labels
-from rotctl.log.schema import MODEL_PATH, SCHEMA, check_dataset, check_layout, names_of
+from rotctl.log.schema import MODEL_PATH, SCHEMA, names_of
 from rotctl.suggestion import meant
 
 

@@ -1,24 +1,16 @@
-"""What a run's log contains: every dataset and root attribute, and the check that both ends share.
+"""What a run's log contains: every dataset and every root attribute.
 
 State at row ``i`` is the state that the controller saw at ``time[i]``; ``ctrl`` row ``i`` is the
 torque held from ``time[i]`` on. Everything is SI, in world axes, about the centre of mass.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from math import prod
-from typing import Any
-
-import numpy as np
-
-from rotctl.errors import LogError
 
 SCHEMA_VERSION = 4
 OLDEST_READ = 2
 
 MODEL_PATH = "model/mjcf"
 EVENT_BYTES = 200
-MAX_MODEL_BYTES = 16 * 2**20
 MAX_TOTAL_BYTES = 2 * 2**30
 # Dimensions of a size that is always the same; what is along them is `LABELS`.
 CONSTANTS = {"xyz": 3, "axis": 3, "row": 3, "part": 4, "force_moment": 6}
@@ -197,82 +189,6 @@ ATTRIBUTES: dict[str, type] = {
 WRITER_ATTRIBUTES = ("schema_version", "content_sha256", "complete")
 
 
-def check_dataset(
-    name: str, dtype: "np.dtype[Any]", shape: tuple[int, ...] | None, sizes: Mapping[str, int]
-) -> dict[str, int]:
-    """Checks one dataset against its spec and the sizes that are known so far.
-
-    Args:
-        name: path in ``SCHEMA``.
-        dtype: its type.
-        shape: its shape; None for HDF5's null dataspace.
-        sizes: symbolic dimension -> size, as bound by other datasets.
-
-    Returns:
-        ``sizes`` and what this dataset adds to them.
-
-    Raises:
-        LogError: wrong type, rank or size.
-    """
-    spec = SCHEMA[name]
-    expected = np.dtype(spec.dtype)
-    if expected.kind == "b" and dtype == np.uint8:  # as it is stored; up to schema 3 as an enum
-        dtype = expected
-    any_length = expected.itemsize == 0 and dtype.kind == expected.kind
-    if dtype != expected and not any_length:
-        raise LogError(f"{name} has type {dtype}, expected {expected.name}")
-    if shape is None or len(shape) != len(spec.shape):
-        raise LogError(f"{name} has shape {shape}, expected {_shape_text(spec)}")
-    bound = dict(sizes)
-    for dim, size in zip(spec.shape, shape, strict=True):
-        wanted = CONSTANTS[dim] if dim in CONSTANTS else bound.setdefault(dim, size)
-        if size != wanted:
-            raise LogError(
-                f"{name} has shape {shape}, expected {_shape_text(spec)}"
-                + ("" if dim in CONSTANTS else f" with {dim} = {wanted}")
-            )
-    return bound
-
-
 def names_of(version: int) -> tuple[str, ...]:
     """The datasets that a log of that schema version has, in the order of ``SCHEMA``."""
     return tuple(name for name, spec in SCHEMA.items() if spec.since <= version)
-
-
-def check_layout(
-    layout: Mapping[str, tuple["np.dtype[Any]", tuple[int, ...] | None]],
-    version: int = SCHEMA_VERSION,
-) -> dict[str, int]:
-    """Checks the datasets of a whole log, from types and shapes alone.
-
-    Args:
-        layout: name -> (type, shape).
-        version: of the log's schema.
-
-    Returns:
-        Symbolic dimension -> size.
-
-    Raises:
-        LogError: a dataset is missing, unknown, misshapen, or the log is absurdly large.
-    """
-    names = names_of(version)
-    for name in layout:
-        if name not in names:
-            raise LogError(f"unknown dataset {name!r}")
-    sizes: dict[str, int] = {}
-    total = 0
-    for name in names:
-        if name not in layout:
-            raise LogError(f"missing dataset {name!r}")
-        dtype, shape = layout[name]
-        sizes = check_dataset(name, dtype, shape, sizes)
-        total += dtype.itemsize * prod(shape or ())
-    if layout[MODEL_PATH][0].itemsize > MAX_MODEL_BYTES:
-        raise LogError(f"{MODEL_PATH} is larger than {MAX_MODEL_BYTES} bytes")
-    if total > MAX_TOTAL_BYTES:
-        raise LogError(f"declares more than {MAX_TOTAL_BYTES} bytes of data")
-    return sizes
-
-
-def _shape_text(spec: DatasetSpec) -> str:
-    return "(" + ", ".join(str(CONSTANTS.get(dim, dim)) for dim in spec.shape) + ")"

@@ -8,8 +8,6 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from rotctl.choices.overrides import assigned, single
-from rotctl.config.loading import composed
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -18,8 +16,7 @@ from rotctl.metrics.expressions.expression import Expression
 from rotctl.results.stored_runs import DONE, StoredRun, stored_runs
 from rotctl.results.table import TAKEN, Table, tabulated
 from rotctl.runs.summary import Summary, judged_again
-from rotctl.settings.complaints import unknown_key
-from rotctl.settings.plain import NOTHING, Way, exchanged, way
+from rotctl.sweep.criteria import Criteria
 from rotctl.sweep.engines import Engine, Failure
 
 NOT_JUDGED = "not judged"
@@ -61,62 +58,6 @@ class Answer(NamedTuple):
     summary: Summary
     complaints: tuple[str, ...]
     remarks: tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Criteria:
-    """What is asked for.
-
-    Attributes:
-        base: criteria in place of a run's own; None: its own.
-        changes: values that are set on them.
-    """
-
-    base: Mapping[str, Any] | None
-    changes: Sequence[tuple[Way, Any]]
-
-    def of(self, own: Mapping[str, Any]) -> Mapping[str, Any]:
-        """The criteria for a run with these of its own.
-
-        Raises:
-            InputError: they have no such key.
-        """
-        found: Any = own if self.base is None else self.base
-        if not isinstance(found, Mapping):
-            raise InputError("its config has no criteria")
-        if found.get("kind") == own.get("kind") == "chain" and not found.get("parts"):
-            found = own  # those that its parts have by themselves, which came with the behaviour
-        for place, value in self.changes:
-            changed = exchanged(found, place, value)
-            if changed is NOTHING:
-                raise InputError(unknown_key(f"criteria.{place[0]}", "criteria", list(found)))
-            found = changed
-        return dict(found)
-
-
-def criteria(overrides: Sequence[str], none: bool = False) -> Criteria:
-    """What overrides such as `criteria=landing criteria.tilt=20` ask for.
-
-    Args:
-        none: whether there may be none, which are a run's own.
-
-    Raises:
-        InputError: one is about something else, which would have to be simulated.
-    """
-    base, changes = None, []
-    for text in overrides:
-        found = assigned(single(text))
-        if found and found.key == "criteria":
-            base = composed([text])["criteria"]
-        elif found and found.key.startswith("criteria."):
-            changes.append((way(found.key)[1:], found.value))
-        else:
-            raise InputError(f"{text}: judge takes criteria=CHOICE and criteria.KEY=VALUE alone")
-    if base is None and not changes and not none:
-        raise InputError(
-            "no criteria; such as criteria=landing or criteria.stall_time=2, or --metric"
-        )
-    return Criteria(base, changes)
 
 
 def require_names(metrics: Sequence[Expression]) -> None:

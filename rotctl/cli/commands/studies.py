@@ -51,7 +51,8 @@ def judge(arguments: argparse.Namespace) -> int:
     from rotctl.metrics.expressions.expression import file_of_metrics, read_all
     from rotctl.results.group_table import markdown
     from rotctl.results.groups import grouped
-    from rotctl.sweep.judging import criteria, judge
+    from rotctl.sweep.criteria import criteria
+    from rotctl.sweep.judging import judge
     from rotctl.sweep.workers import make_engine
 
     folder = run_folder(arguments.folder)
