@@ -93,7 +93,8 @@ typedef struct {
   double angle[3], orientation[4], phase, axis[3], origin[3], first_angle[3], due, late;
 } RollMemory;
 
-// A pace's settings; behaviours/rolling/pacing.py. Times of changes are (changes), rates one more.
+// A pace's settings; behaviours/rolling/pace_settings.py. Times of changes are (changes), rates
+// one more.
 typedef struct {
   double travel, own, calm, swing, swing_from, surge, surge_from, wait, width, approach, leave;
   double back, ahead;
