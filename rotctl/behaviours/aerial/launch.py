@@ -14,18 +14,18 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
 from rotctl.behaviours.aerial.flight import Flight
+from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.bodies import body_ids
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Finite, Fraction, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Lean:
+class Lean(NamesBodies):
     """Go down, then fall slowly to one side, pressure inside the feet all the while: linear.
 
     Along the way the centre of mass gets its speed, as far as pressure within the feet can give
@@ -53,10 +53,6 @@ class Lean:
     steady: Positive
     ahead: Finite = 0.0
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
-
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
         (ahead, left, _), momentum = scene.axes, scene.state.momentum
@@ -75,7 +71,7 @@ class Lean:
 
 
 @validated(frozen=True, config=STRICT)
-class Launch:
+class Launch(NamesBodies):
     """The velocity at take-off is there when the height is: linear.
 
     Attributes:
@@ -98,10 +94,6 @@ class Launch:
     soonest: Positive
     most: NonNegative = 0.0
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
-
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
         ahead, left, _ = scene.axes
@@ -121,7 +113,7 @@ class Launch:
 
 
 @validated(frozen=True, config=STRICT)
-class Whirl:
+class Whirl(NamesNothing):
     """Angular momentum at take-off, as much as the flight needs at an average tuck: spin.
 
     Attributes:
@@ -143,9 +135,6 @@ class Whirl:
     most: Positive
     least: NonNegative = 0.0
     ceiling: NonNegative = 0.0
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""

@@ -8,6 +8,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
@@ -16,7 +17,7 @@ from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Names, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class FaceDown:
+class FaceDown(NamesNothing):
     """The trunk's front looks down: on the front, on hands and knees.
 
     Attributes:
@@ -25,9 +26,6 @@ class FaceDown:
 
     kind: Literal["face_down"]
     angle: Annotated[Positive, Field(le=180.0)]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, model: Model, state: State) -> bool:
         """Whether it is so."""
@@ -70,7 +68,7 @@ class OnFeet:
 
 
 @validated(frozen=True, config=STRICT)
-class Rolls:
+class Rolls(NamesNothing):
     """It still rolls, forward or backward: the whole body turns about the trunk's left.
 
     Attributes:
@@ -81,9 +79,6 @@ class Rolls:
     kind: Literal["rolls"]
     turning: Positive
     tilt: Annotated[Positive, Field(le=90.0)]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, model: Model, state: State) -> bool:
         """Whether it is so."""

@@ -11,6 +11,7 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aerial.launch import Launch, Lean, Whirl
+from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.staged.attitudes import Bow, Face, Plane, Upright
 from rotctl.behaviours.staged.placing import Above, Ground, Opposite, Watch
@@ -24,20 +25,16 @@ from rotctl.behaviours.standing.wheeling import Carry, Place, Stride
 from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
 from rotctl.mechanics import excursion
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Positive
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
 @validated(frozen=True, config=STRICT)
-class Hold:
+class Hold(NamesNothing):
     """Stay as at the begin of the stage: linear, spin, point, attitude."""
 
     law: Literal["hold"]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
@@ -53,13 +50,10 @@ class Hold:
 
 
 @validated(frozen=True, config=STRICT)
-class Pose:
+class Pose(NamesNothing):
     """A body's joints as the stage's pose has them, and as fast as it has them move: joints."""
 
     law: Literal["pose"]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and velocity."""
@@ -69,7 +63,7 @@ class Pose:
 
 
 @validated(frozen=True, config=STRICT)
-class Turn:
+class Turn(NamesNothing):
     """Turn to the behaviour's target excursion, and keep to its axis: spin.
 
     Attributes:
@@ -78,9 +72,6 @@ class Turn:
 
     law: Literal["turn"]
     most: Positive
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""

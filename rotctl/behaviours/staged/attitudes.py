@@ -6,17 +6,17 @@ from typing import Literal
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.maths.rotations import about_up, advance, advanced, rotation_between
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Finite, Fraction
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
 @validated(frozen=True, config=STRICT)
-class Upright:
+class Upright(NamesNothing):
     """A body's up is the world's, whatever its turn about it: attitude.
 
     Of one that is on the ground it is the ground's normal: a foot that is held level on a slope
@@ -24,9 +24,6 @@ class Upright:
     """
 
     law: Literal["upright"]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
@@ -43,7 +40,7 @@ class Upright:
 
 
 @validated(frozen=True, config=STRICT)
-class Bow:
+class Bow(NamesNothing):
     """A body faces the way, and bows to it: attitude.
 
     Attributes:
@@ -53,9 +50,6 @@ class Bow:
     law: Literal["bow"]
     angle: Finite
 
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
-
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         forward, left, _ = scene.axes
@@ -64,7 +58,7 @@ class Bow:
 
 
 @validated(frozen=True, config=STRICT)
-class Face:
+class Face(NamesNothing):
     """A body is upright and faces where a turn about up has brought it: attitude.
 
     Attributes:
@@ -74,9 +68,6 @@ class Face:
     law: Literal["face"]
     share: Fraction
 
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
-
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""
         forward = scene.axes[0]
@@ -85,16 +76,13 @@ class Face:
 
 
 @validated(frozen=True, config=STRICT)
-class Plane:
+class Plane(NamesNothing):
     """A body turns in its plane, as far as it likes: attitude.
 
     The plane lies across left, or across forward where the behaviour turns about that.
     """
 
     law: Literal["plane"]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target: the present attitude, less what turns its axis away."""

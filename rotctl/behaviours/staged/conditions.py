@@ -8,26 +8,22 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aerial.launch import leaning
+from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.staged.touching import Airborne, Enters, Lands, Launched, Touches
 from rotctl.behaviours.standing.pivoting import Escapes
 from rotctl.behaviours.standing.poising import borne_at
 from rotctl.behaviours.standing.wheeling import beyond
 from rotctl.maths.rotations import dot
-from rotctl.mechanics.bodies import body_ids
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import SPARSE, STRICT, Finite, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class After:
+class After(NamesNothing):
     """So long after the stage began [s]."""
 
     kind: Literal["after"]
     seconds: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -35,7 +31,7 @@ class After:
 
 
 @validated(frozen=True, config=STRICT)
-class Turned:
+class Turned(NamesNothing):
     """Turned so far since the behaviour began, as a share of its target or by an angle [deg]."""
 
     kind: Literal["turned"]
@@ -45,9 +41,6 @@ class Turned:
     def __post_init__(self) -> None:
         if (self.share is None) == (self.angle is None):
             raise ValueError("give either share or angle, not both and not neither")
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -59,7 +52,7 @@ class Turned:
 
 
 @validated(frozen=True, config=STRICT)
-class Near:
+class Near(NamesNothing):
     """So near to the behaviour's target, on either side [deg], and calm.
 
     Attributes:
@@ -74,9 +67,6 @@ class Near:
     speed: Positive | None = field(default=None, metadata=SPARSE)
     turning: Positive | None = field(default=None, metadata=SPARSE)
     level: Annotated[Positive, Field(le=90.0)] | None = field(default=None, metadata=SPARSE)
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -93,7 +83,7 @@ class Near:
 
 
 @validated(frozen=True, config=STRICT)
-class Leant:
+class Leant(NamesNothing):
     """The trunk leans so far, whichever way [deg]: 90 lies, 180 is head down.
 
     From the ground's normal: who lies with the head downhill has not begun to lean by that.
@@ -106,9 +96,6 @@ class Leant:
     angle: Annotated[NonNegative, Field(le=180.0)]
     after: NonNegative
 
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
-
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         x, y, _ = scene.state.momentum.com.tolist()
@@ -118,14 +105,11 @@ class Leant:
 
 
 @validated(frozen=True, config=STRICT)
-class Low:
+class Low(NamesNothing):
     """The centre of mass is nearer to the ground than that [m]."""
 
     kind: Literal["low"]
     height: Positive
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -134,14 +118,11 @@ class Low:
 
 
 @validated(frozen=True, config=STRICT)
-class Still:
+class Still(NamesNothing):
     """Nothing has moved fast for so long [s]."""
 
     kind: Literal["still"]
     seconds: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -149,16 +130,12 @@ class Still:
 
 
 @validated(frozen=True, config=STRICT)
-class Tilted:
+class Tilted(NamesBodies):
     """The centre of mass leans so far over the middle of these bodies, to forward [deg]."""
 
     kind: Literal["tilted"]
     bodies: Names
     angle: Finite
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -169,7 +146,7 @@ class Tilted:
 
 
 @validated(frozen=True, config=STRICT)
-class Passed:
+class Passed(NamesBodies):
     """The centre of mass is so far beyond the middle of these bodies along the way, or nearer [m].
 
     Attributes:
@@ -180,17 +157,13 @@ class Passed:
     bodies: Names
     distance: Finite
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
-
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         return beyond(scene, self.bodies) >= self.distance
 
 
 @validated(frozen=True, config=STRICT)
-class Leaves:
+class Leaves(NamesBodies):
     """None of these bodies is on the ground any more, or it has turned too far to push on.
 
     Attributes:
@@ -203,10 +176,6 @@ class Leaves:
     after: NonNegative
     angle: Finite
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
-
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         if Turned("turned", angle=self.angle).met(scene):
@@ -216,7 +185,7 @@ class Leaves:
 
 
 @validated(frozen=True, config=STRICT)
-class Over:
+class Over(NamesBodies):
     """The centre of mass is over the middle of these bodies' contacts, along the way, and calm.
 
     Attributes:
@@ -228,10 +197,6 @@ class Over:
     bodies: Names
     within: Positive
     speed: Positive
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
@@ -16,13 +17,10 @@ from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Watch:
+class Watch(NamesNothing):
     """Nothing is wanted: the log's error is the way from the point to the centre of mass: point."""
 
     law: Literal["watch"]
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target, and no weight."""
@@ -31,7 +29,7 @@ class Watch:
 
 
 @validated(frozen=True, config=STRICT)
-class Ground:
+class Ground(NamesNothing):
     """A point that has left the ground is brought back to it: point.
 
     Attributes:
@@ -40,9 +38,6 @@ class Ground:
 
     law: Literal["ground"]
     height: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target; a body that stands has no weight here, its contacts hold it."""
@@ -54,7 +49,7 @@ class Ground:
 
 
 @validated(frozen=True, config=STRICT)
-class Above:
+class Above(NamesBodies):
     """The centre of mass comes over the middle of bodies that may bear nothing yet: linear.
 
     Attributes:
@@ -69,10 +64,6 @@ class Above:
     height: Positive
     most: Positive
     ahead: Finite = 0.0
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.aerial.launch import Whirl
+from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_ids, lowest_and_highest
@@ -15,7 +16,7 @@ from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Touches:
+class Touches(NamesBodies):
     """One of these bodies is on the ground; a name without a side stands for both sides.
 
     Attributes:
@@ -26,10 +27,6 @@ class Touches:
     bodies: Names
     after: NonNegative = 0.0
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
-
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         if scene.state.time - scene.begin.time < self.after - 1e-9:
@@ -39,14 +36,11 @@ class Touches:
 
 
 @validated(frozen=True, config=STRICT)
-class Airborne:
+class Airborne(NamesNothing):
     """Nothing has touched the ground for so long [s]."""
 
     kind: Literal["airborne"]
     seconds: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -54,15 +48,11 @@ class Airborne:
 
 
 @validated(frozen=True, config=STRICT)
-class Lands:
+class Lands(NamesBodies):
     """As `touches`, on the way down: feet that leave the ground in their time do not count."""
 
     kind: Literal["lands"]
     bodies: Names
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -95,7 +85,7 @@ class Enters:
 
 
 @validated(frozen=True, config=STRICT)
-class Launched:
+class Launched(NamesNothing):
     """It rises at a speed [m/s], has come to a height [m], or its legs are straight [rad].
 
     Attributes:
@@ -109,9 +99,6 @@ class Launched:
     height: Positive
     knee: Positive
     turning: str = ""
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""

@@ -7,18 +7,18 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Capture:
+class Capture(NamesBodies):
     """Keep the capture point over the bodies that stand, and a height: linear.
 
     The centre of pressure goes beyond the capture point, as seen from the middle of the support,
@@ -49,10 +49,6 @@ class Capture:
     lunge_margin: NonNegative = 0.0
     lunge_most: NonNegative = 0.0
     rise: NonNegative = 0.0
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target and acceleration."""
@@ -100,7 +96,7 @@ class Capture:
 
 
 @validated(frozen=True, config=STRICT)
-class Lunge:
+class Lunge(NamesNothing):
     """The whole body's spin that pressure from beyond the feet stands for: spin.
 
     Attributes:
@@ -111,9 +107,6 @@ class Lunge:
     law: Literal["lunge"]
     task: str
     fade: Positive
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set velocity and acceleration."""

@@ -7,18 +7,18 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.named_bodies import NamesBody
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.standing.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import dot
-from rotctl.mechanics.bodies import body_id, body_ids
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.bodies import body_ids
 from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
-class Beside:
+class Beside(NamesBody):
     """Set a foot down beside the other one, which bears the body, in a time: point.
 
     It stays on its side, and is neither before nor behind the other, as the behaviour faces.
@@ -37,10 +37,6 @@ class Beside:
     time: Positive
     lift: NonNegative
     height: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_id(model.mj, self.body, f"{key}.body")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target, velocity and acceleration; the task has stiffness upward alone."""

@@ -5,17 +5,17 @@ from typing import Literal
 
 from pydantic.dataclasses import dataclass as validated
 
+from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.support import FACING, Facing
 from rotctl.control.task import Tasks
 from rotctl.maths.rotations import about_up
 from rotctl.mechanics.bodies import ROOT_BODY
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT
 
 
 @validated(frozen=True, config=STRICT)
-class Heading:
+class Heading(NamesNothing):
     """Turn a foot that swings to where the pelvis faces; no weight for others: attitude.
 
     Attributes:
@@ -24,9 +24,6 @@ class Heading:
 
     law: Literal["heading"]
     facing: Facing = "front"
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the target."""

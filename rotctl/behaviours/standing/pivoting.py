@@ -10,18 +10,18 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
+from rotctl.behaviours.named_bodies import NamesBody
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.standing.swinging import arrival
 from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
-from rotctl.mechanics.bodies import body_id, body_ids
-from rotctl.mechanics.model import Model
+from rotctl.mechanics.bodies import body_ids
 from rotctl.settings.fields import STRICT, Positive, Vector
 
 
 @validated(frozen=True, config=STRICT)
-class Bring:
+class Bring(NamesBody):
     """Bring the centre of mass over a point of a body, at rest, in a time: linear.
 
     Attributes:
@@ -37,10 +37,6 @@ class Bring:
     seconds: Positive
     soonest: Positive
 
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_id(model.mj, self.body, f"{key}.body")
-
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration: along the ground alone, and none upward."""
         (x, y, _), momentum = _place(scene, self.body, self.point).tolist(), scene.state.momentum
@@ -51,7 +47,7 @@ class Bring:
 
 
 @validated(frozen=True, config=STRICT)
-class Escapes:
+class Escapes(NamesBody):
     """The capture point is so far from a point of a body that another foot is needed.
 
     Attributes:
@@ -64,10 +60,6 @@ class Escapes:
     body: str
     point: Vector
     distance: Positive
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where this stands."""
-        body_id(model.mj, self.body, f"{key}.body")
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""

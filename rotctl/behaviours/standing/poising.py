@@ -24,19 +24,19 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
 from rotctl.behaviours.aerial.launch import pendulum_rate
+from rotctl.behaviours.named_bodies import NamesBodies
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, Triple, cross, dot
 from rotctl.mechanics.bodies import body_ids
-from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
 NARROW = 0.05  # [m] hands that are closer make no line
 
 
 @validated(frozen=True, config=STRICT)
-class Poise:
+class Poise(NamesBodies):
     """Keep the balance on hands while the body takes the stage's pose: linear.
 
     Attributes:
@@ -51,10 +51,6 @@ class Poise:
     rate: Positive
     gain: NonNegative
     margin: NonNegative
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""
@@ -82,7 +78,7 @@ class Poise:
 
 
 @validated(frozen=True, config=STRICT)
-class Shift:
+class Shift(NamesBodies):
     """Bring the centre of mass over some of the bodies that bear it: linear.
 
     Attributes:
@@ -97,10 +93,6 @@ class Shift:
     rate: Positive
     most: Positive
     ahead: Finite = 0.0
-
-    def check(self, model: Model, key: str) -> None:
-        """Raises InputError for a body that is not there; `key` says where the aim stands."""
-        body_ids(model.mj, self.bodies, f"{key}.bodies")
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set the acceleration."""

@@ -14,6 +14,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
 from rotctl.behaviours.aerial.launch import Base, captured
+from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.standing.swinging import SOONEST, arrival, rise, velocity_of
 from rotctl.control.task import Tasks
@@ -208,7 +209,7 @@ class Place:
 
 
 @validated(frozen=True, config=STRICT)
-class Stride:
+class Stride(NamesNothing):
     """Step to the side with a foot, in a time: point.
 
     Across the way it goes to where the body comes to rest.
@@ -225,9 +226,6 @@ class Stride:
     time: Positive
     lift: NonNegative
     height: Finite
-
-    def check(self, model: Model, key: str) -> None:
-        """Nothing can be wrong."""
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set target, velocity and acceleration; the task has stiffness upward alone."""
