@@ -11,7 +11,7 @@ from rotctl.behaviours.rolling.compiled import PACE
 from rotctl.behaviours.rolling.pace_settings import PaceSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.config.loading import load
-from rotctl.control import compiled
+from rotctl.control import compiled, handover
 from rotctl.mechanics import pair_limit
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
@@ -179,7 +179,7 @@ def test_what_disturbs_is_left_to_python_while_it_does(both, overrides, python):
 
 def test_a_period_whose_solver_fails_is_left_to_the_reference(both, monkeypatch):
     """And C goes on after it; here it is made to doubt good solutions."""
-    monkeypatch.setattr(compiled, "TOLERANCE", 1e-10)
+    monkeypatch.setattr(handover, "TOLERANCE", 1e-10)
     buffer, made = both("behaviour=forward_roll_1_on_head", "seed=2004", "duration=1")
     assert 5 < made < 50
     assert buffer.events  # the reference's first solver stopped short, too
