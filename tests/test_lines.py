@@ -6,7 +6,7 @@ from datetime import datetime
 
 import pytest
 
-from rotctl.cli.wording import readable
+from rotctl.cli.run_wording import readable
 from rotctl.results.lines import LONGEST, MOST, lines
 from rotctl.results.stored_runs import DONE, StoredRun
 

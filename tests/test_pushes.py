@@ -229,7 +229,7 @@ def test_a_table_has_the_share_that_rolled_on_and_nothing_of_who_was_not_pushed(
     assert found.rows["recovered_rate"].tolist() == pytest.approx([2 / 3, nan], nan_ok=True)
     heading, _, a, b = markdown(found).splitlines()
     assert heading.split()[-2] == "recovered"
-    assert a.split()[-3:-1] == ["67", "%"]
+    assert a.split()[-5:-1] == ["67", "%", "of", "3"]
     assert b.split()[-2] == "-"
     alone = Table(table.rows[4:].reset_index(drop=True), table.keys, table.metrics, [])
     assert "recovered" not in markdown(grouped(alone))
