@@ -15,6 +15,7 @@ from rotctl.settings.documents import DEEPEST
 from rotctl.sweep.keep import Keep
 from rotctl.sweep.keep import read as read_keep
 from rotctl.sweep.launch import launch
+from rotctl.sweep.messages import at_the_start
 from rotctl.sweep.plan import plan, planned
 from rotctl.sweep.points import points
 
@@ -140,10 +141,25 @@ def test_a_flipped_bit_is_told_and_its_run_made_again(harmed):
     middle = len(lines[-1]) // 2
     flipped = lines[-1][:middle] + bytes([lines[-1][middle] ^ 1]) + lines[-1][middle + 1 :]
     (folder / "runs.jsonl").write_bytes(b"".join([*lines[:-1], flipped]))
-    assert table(folder).notes == [f"{folder}/runs.jsonl: 1 lines damaged, left out"]
+    assert table(folder).notes == [f"{folder}/runs.jsonl: 1 line damaged, left out"]
     _, there, engine = sweep(folder, *GRID, keep=Keep("rows"))
     assert engine.asked == 1
-    assert there.replaced == [f"{folder / 'runs.jsonl'}: 1 lines damaged, left out"]
+    told = at_the_start(there, folder, "1 worker", 3, 3)
+    assert told.splitlines() == [
+        f"{folder}/runs.jsonl: 1 line damaged, left out",
+        f"1 run to do in {folder}, 2 are there already; on 1 worker",
+    ]
+
+
+def test_lines_that_were_no_runs_make_none_again(harmed):
+    folder, lines = harmed
+    (folder / "runs.jsonl").write_bytes(b"".join([b"no row\n", *lines, b"nor this\n"]))
+    _, there, engine = sweep(folder, *GRID, keep=Keep("rows"))
+    assert engine.asked == 0
+    assert at_the_start(there, folder, "1 worker", 3, 3).splitlines() == [
+        f"{folder}/runs.jsonl: 2 lines damaged, left out",
+        f"0 runs to do in {folder}, 3 are there already; on 1 worker",
+    ]
 
 
 @pytest.mark.parametrize(

@@ -73,6 +73,12 @@ class Index:
     named: dict[str, Any] = field(default_factory=dict)
     damaged: int = 0
 
+    @property
+    def complaint(self) -> str:
+        """That lines could not be used; empty if all could."""
+        lines = "line" if self.damaged == 1 else "lines"
+        return f"{self.damaged} {lines} damaged, left out" if self.damaged else ""
+
 
 def stamp(path: str | Path) -> Stamp | None:
     """Of a file as it lies there now; None if there is none, or its folder is a link."""

@@ -103,8 +103,8 @@ def _places(
         if INDEX_NAME not in names:
             continue
         listed, there = index.read(Path(at)), set(inside)
-        if listed.damaged:
-            notes.append(f"{at}/{INDEX_NAME}: {listed.damaged} lines damaged, left out")
+        if listed.complaint:
+            notes.append(f"{at}/{INDEX_NAME}: {listed.complaint}")
         for row in listed.rows.values():
             log = f"{at}/{row.run_id}/{LOG_NAME}"
             found = index.stamp(log) if row.run_id in there else None

@@ -87,7 +87,7 @@ def at_the_start(
         points: of the grid; runs: that they are.
         others: runs of other sweeps there, where claims are to be judged.
     """
-    lines = [f"simulated again: {reason}" for reason in plan.replaced]
+    lines = [*plan.notes, *(f"simulated again: {reason}" for reason in plan.replaced)]
     lines += _fewer(points, runs)
     for code, count in plan.other_code.items():
         lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")

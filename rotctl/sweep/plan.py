@@ -47,6 +47,7 @@ class Plan:
         wish: run id -> when its log is kept, of those.
         index: of the folder.
         unlisted: rows of logs that are there, and not in the index.
+        notes: what is wrong in the folder though no run need be made again for it, one line each.
         replaced: why a log that was there has to be made again, one line each.
         other_code: code version -> how many runs of `done` it made, if it is not this code.
     """
@@ -56,6 +57,7 @@ class Plan:
     wish: dict[str, str] = field(default_factory=dict)
     index: Index = field(default_factory=Index)
     unlisted: list[Row] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
     replaced: list[str] = field(default_factory=list)
     other_code: dict[str, int] = field(default_factory=dict)
 
@@ -102,8 +104,8 @@ def plan(
         InputError: a damaged log cannot be set aside, or the index cannot be read.
     """
     found, this_code = Plan(index=index.read(folder)), code_version(collect())
-    if count := found.index.damaged:
-        found.replaced.append(f"{folder / INDEX_NAME}: {count} lines damaged, left out")
+    if found.index.complaint:
+        found.notes.append(f"{folder / INDEX_NAME}: {found.index.complaint}")
     wish = keep.of(run.run_id for run in runs)
     for run in runs:
         wanted = wish(run.run_id)
