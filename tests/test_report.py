@@ -16,7 +16,9 @@ import pytest
 from here import swept
 from logs import changed
 
+from rotctl.choices.listing import choices
 from rotctl.cli.main import main
+from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.files import replace as replace_file
 from rotctl.log import RunLog
@@ -30,11 +32,21 @@ from rotctl.report.site.grid import grid
 from rotctl.report.site.panels import drawn
 from rotctl.report.site.rows import from_worst, rows
 from rotctl.report.site.study import studies, warnings
-from rotctl.report.site.words import Names, kind, number, outcome, ranges
+from rotctl.report.site.words import (
+    QUANTITIES,
+    Names,
+    kind,
+    number,
+    outcome,
+    ranges,
+    with_unit,
+)
 from rotctl.results import index
 from rotctl.results.index_writer import Writer
 from rotctl.results.manifest import Entry, read, write
 from rotctl.results.sweeps import sweeps
+from rotctl.runs.summary import numbers
+from rotctl.sweep.claimed import METRICS
 
 ARGUMENTS = ["behaviour=forward_roll_1,decline", "seed=range(0,3)", "duration=2"]
 EXPERIMENT = """
@@ -644,6 +656,13 @@ def test_claims_that_nobody_could_test_are_named_with_the_reason(sweep, tmp_path
 
 
 # ---------------------------------------------------------------- words
+
+
+def test_all_that_is_measured_has_a_title():
+    assert set(METRICS) <= QUANTITIES.keys()
+    for name in choices("behaviour"):
+        assert numbers(load([f"behaviour={name}"])) <= QUANTITIES.keys(), name
+    assert with_unit(number(3), "solver_failures") == "3 steps"
 
 
 @pytest.mark.parametrize(

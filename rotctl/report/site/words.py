@@ -24,6 +24,7 @@ QUANTITIES = {
 }
 OFTEN = tuple(QUANTITIES)  # these before others
 QUANTITIES |= {c.name: (c.title, c.unit) for c in COLUMNS.values() if c.name not in QUANTITIES}
+QUANTITIES["solver_failures"] = ("Solver failures", "steps")
 NOTHING = "\u2013"
 LONGEST = 80  # letters of a kind of failure
 _ANY = "\u2026"  # for a number
