@@ -252,6 +252,10 @@ def test_what_is_wrong_is_said(overrides, message):
          "or ']'"),
         ("- 1", ": must be keys with values: title, source, matrix, seeds, claims, deviations, "
          "limitations"),
+        ("{title: x, source: y, matrix: [], seeds: 1.5, claims: []}",
+         ": seeds=1.5: must be one seed, or several as in range(0,100) or 2000,2001"),
+        ("{title: x, source: y, matrix: [], seeds: [1, 2], claims: []}",
+         ": seeds: must be one seed, or several as in range(0,100) or 2000,2001"),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):
@@ -262,3 +266,11 @@ def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):
     with pytest.raises(InputError) as error:
         experiment("wrong")
     assert str(error.value) == f"{file}{message}"
+
+
+def test_one_seed_needs_no_quotes(tmp_path, monkeypatch):
+    (tmp_path / "experiments").mkdir()
+    text = "{title: x, source: y, matrix: [[duration=1]], seeds: 2000, claims: []}"
+    (tmp_path / "experiments" / "one.yaml").write_text(text)
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
+    assert experiment("one").grids([]) == [["duration=1", "seed=2000"]]

@@ -6,7 +6,9 @@ to show.
 
 from dataclasses import field
 from pathlib import Path
+from typing import Annotated
 
+from pydantic import BeforeValidator
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl import files
@@ -33,6 +35,13 @@ class Deviation:
     where: Where = field(default_factory=dict)
 
 
+def _in_words(seeds: object) -> str:
+    """Seeds as a sweep takes them; of a single one YAML makes a number."""
+    if type(seeds) not in (str, int):
+        raise ValueError("must be one seed, or several as in range(0,100) or 2000,2001")
+    return str(seeds)
+
+
 @validated(frozen=True, config=STRICT)
 class Experiment:
     """A sweep that can be named.
@@ -47,7 +56,7 @@ class Experiment:
     title: str
     source: str
     matrix: list[list[str]]
-    seeds: str
+    seeds: Annotated[str, BeforeValidator(_in_words)]
     claims: list[Claim]
     deviations: list[Deviation] = field(default_factory=list)
     limitations: list[str] = field(default_factory=list)
