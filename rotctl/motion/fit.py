@@ -64,7 +64,7 @@ class Fit:
         thigh = mj.body("thigh_l").id
         self.leg = float(sum(np.linalg.norm(mj.body(b).pos) for b in ("shin_l", "foot_l")))
         self.hips = mj.body_pos[thigh] * [1.0, 0.0, 1.0]  # between the hip joints
-        self._rotation = np.empty((3, mj.nv))
+        self._rotations = np.empty((len(SEGMENTS), 3, mj.nv))
         self.limbs = limbs_of(mj, self.low, self.high)
 
     def limb_error(self, limb: Limb, position: Array, targets: Array) -> float:
@@ -170,14 +170,17 @@ class Fit:
         pointing = self._point(position)
         mujoco.mj_comPos(self.mj, self.data)
         misses = weights[:, None] * (targets - pointing)
-        rows = []
-        for body, direction, weight in zip(self.bodies, pointing, weights, strict=True):
-            mujoco.mj_jacBody(self.mj, self.data, None, self._rotation, body)
-            rows.append(weight * np.cross(self._rotation[:, 3:], direction, axis=0))
+        for body, rotation in zip(self.bodies, self._rotations, strict=True):
+            mujoco.mj_jacBody(self.mj, self.data, None, rotation, body)
+        a, b, c = self._rotations[:, :, 3:].transpose(1, 0, 2)
+        x, y, z = pointing.T[:, :, None]
+        # np.cross would take most of the time of an import
+        turned = np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=1)
         angles = position[7:]
         own = np.hstack([np.zeros((len(angles), 3)), np.eye(len(angles))])
+        rows = (weights[:, None, None] * turned).reshape(-1, self.mj.nv - 3)
         return (
-            np.vstack([*rows, TO_ZERO * own, to_previous * own]),
+            np.vstack([rows, TO_ZERO * own, to_previous * own]),
             np.concatenate([misses.ravel(), -TO_ZERO * angles, to_previous * (before - angles)]),
         )
 
