@@ -20,6 +20,8 @@ from rotctl.mechanics.stature import grown
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.settings.checking import checked
+from rotctl.simulation.sampling import draw
+from rotctl.simulation.start import Posture, StartSettings
 
 # The tree hangs on the chest, the arms are out to the sides, elbows bent, motors have gears.
 LEG = """
@@ -327,6 +329,17 @@ def test_poses_may_name_what_it_has_not(robot):
     with pytest.raises(InputError, match="a pose names the unknown joint 'tail'"):
         made.model.motors("tail", "a pose")
     assert not in_memory(made)[1]
+
+
+def test_a_start_bends_the_waist_by_what_a_chest_would(robot):
+    """As a motion does: it began with a straighter back than the motion that it was to follow."""
+    model = build(load_with(adopt(robot, "mine").character)).model
+    nothing = (0.0, 0.0)
+    posture = Posture(0.0, {"waist_y": 0.2, "chest_y": 0.3})
+    settings = StartSettings("still", *([nothing] * 6), postures={"left": posture})
+    start = draw(settings, model, "left", np.random.default_rng(0))
+    assert start.pose[model.joint_names.index("waist_y")] == pytest.approx(0.5)
+    assert np.count_nonzero(start.pose) == 1
 
 
 def test_what_the_joints_have_is_kept(tmp_path):

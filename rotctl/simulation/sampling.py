@@ -1,6 +1,5 @@
 """A start state, drawn from the seed: on the ground, falling, aloft, or beside a known one."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from math import sqrt
 
@@ -66,7 +65,7 @@ def draw(
             f"{WAYS[roll_about]} (behaviour.roll_about={roll_about}); {suited(roll_about)}"
         )
     posture = settings.postures[roll_about]
-    pose = _pose(model, posture.pose, f"start.postures.{roll_about}.pose")
+    (pose,) = model.posed(posture.pose, f"start.postures.{roll_about}.pose", 1)
     placed = replace(start, pitch=start.pitch + posture.pitch)
     return _scattered(settings, model, placed, pose, generator)
 
@@ -98,7 +97,7 @@ def _aloft(
     generator: np.random.Generator,
 ) -> Start:
     x, y, _ = start.velocity.tolist()
-    pose = _pose(model, aloft.pose, "start.aloft.pose")
+    (pose,) = model.posed(aloft.pose, "start.aloft.pose", 1)
     found = spawned.draw(aloft, model, start.pitch, pose, generator)
     flies = replace(
         start,
@@ -123,8 +122,8 @@ def _known(
             f"has {model.mass:.4g} kg; give the character of the run that it is from, or "
             "start.state.mass=null to start so all the same"
         )
-    pose = _pose(model, state.pose, "start.state.pose")
-    speeds = _pose(model, state.speeds, "start.state.speeds")
+    (pose,) = model.posed(state.pose, "start.state.pose", 1)
+    (speeds,) = model.posed(state.speeds, "start.state.speeds", 1)
     beside = _scattered(settings, model, start, pose, generator)
     return replace(beside, gap=state.gap, known=Known(state, speeds))
 
@@ -145,11 +144,3 @@ def _tilt(largest: float, generator: np.random.Generator) -> Array:
     way = generator.normal(size=3)
     length = sqrt(dot(way, way))
     return way * (generator.uniform(0.0, largest) / length)
-
-
-def _pose(model: Model, angles: Mapping[str, float], key: str) -> Array:
-    """Angles by joint name to an array (nu,) in motor order."""
-    pose = np.zeros(len(model.joint_names))
-    for name, angle in angles.items():
-        pose[model.motors(name, key)] = angle
-    return pose
