@@ -382,6 +382,20 @@ def test_of_sweeps_over_several_behaviours_their_names_are_compared(here, cli):
     assert line.split() == ["recovered_rate", "-", "1"]
 
 
+def test_figures_that_only_some_runs_of_a_sweep_have_say_how_many(here, cli):
+    short, pushed = "duration=0.2", ["disturbance=push", "disturbance.time=0.5", "duration=2.5"]
+    for choice in ("forward_roll_1", "stand"):
+        api.simulate(load([f"behaviour={choice}", short]), "a")
+    api.simulate(load([short]), "b")
+    api.simulate(load([*pushed, "disturbance.impulse=1"]), "b")
+    figures = cli("diff", "a", "b")[1].partition("figures")[2]
+    told = {line.split()[0]: line.split()[1:] for line in figures.splitlines()[1:]}
+    assert told["recovered_rate"] == ["-", "1", "of", "1"]
+    assert told["speed_commanded"] == ["1.2", "of", "1", "1.2"]
+    assert told["other_contact"] == ["0", "of", "1", "-"]
+    assert "of" not in told["torque_p99_fraction"]
+
+
 def test_two_claims_of_one_name_are_refused(here, cli):
     cli("new", "experiments", "mine", "--from", "forward_roll_1")
     path = here / "conf" / "experiments" / "mine.yaml"

@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME, RunLog
@@ -21,6 +21,13 @@ NAME = ".name"  # of a choice, in its group
 _SPREAD = ("_q25", "_median", "_q75")
 
 
+class Some(NamedTuple):
+    """A figure that only so many runs of a sweep have."""
+
+    figure: Any
+    runs: int
+
+
 @dataclass(frozen=True)
 class Side:
     """What is compared.
@@ -28,7 +35,8 @@ class Side:
     Attributes:
         sweep: whether it is many runs.
         config: dotted key to value; of many runs what they share, else `(varies)`.
-        figures: name to value, or to (quartile, median, quartile).
+        figures: name to value, or to (quartile, median, quartile); `Some` where only some runs
+            have it.
         mixed: groups of which its runs have several choices.
     """
 
@@ -80,6 +88,9 @@ def _side(path: Path, opened: Callable[[Path], RunLog]) -> Side:
     figures: dict[str, Any] = {"runs": row["n"]} | {key: row[key] for key in rates}
     spreads = {name: tuple(row[f"{name}{part}"] for part in _SPREAD) for name in measured}
     figures |= {name: spread for name, spread in spreads.items() if spread[1] == spread[1]}
+    for name in figures:
+        runs = row.get(f"{name.removesuffix('_rate')}_n", row["n"])
+        figures[name] = figures[name] if runs == row["n"] else Some(figures[name], runs)
     config = _flat([dict(run.config) for run in done])
     mixed = [key for key in config if _names(key) and config[key] == _VARIES]
     for key in mixed:
@@ -128,9 +139,11 @@ def _table(title: str, one: Mapping[str, Any], other: Mapping[str, Any], *names:
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, Some):
+        return f"{_text(value.figure)} of {value.runs}"
     if isinstance(value, tuple):
-        low, middle, high = value
-        return f"{_text(middle)} [{_text(low)}, {_text(high)}]"
+        low, middle, high = map(_text, value)
+        return middle if low == middle == high else f"{middle} [{low}, {high}]"
     if isinstance(value, float):
         return f"{value:.4g}"
     return "-" if value is None else json.dumps(value) if isinstance(value, str) else str(value)
