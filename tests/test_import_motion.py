@@ -14,6 +14,7 @@ from rotctl.choices.config_folders import conf_dir
 from rotctl.cli.clip_wording import _clock
 from rotctl.cli.main import main
 from rotctl.config.loading import load
+from rotctl.errors import InputError
 from rotctl.motion import load_clip
 from rotctl.motion.flight import ADULT_LEG, Flight, flights
 from rotctl.motion.importing import import_motion
@@ -247,6 +248,24 @@ def test_a_clip_in_a_conf_of_ones_own_is_found(tmp_path, cli, monkeypatch):
     assert not (tmp_path / "elsewhere" / "rotctl.yaml").exists()
     assert cli("author-motion", keys, "--out", "conf/motion/mine.yaml")[0] == 0
     assert cli("preview-motion", "mine", "--out", tmp_path / "a.png", "--frames", 2)[0] == 0
+
+
+@pytest.mark.parametrize("drawn", [False, True])
+def test_a_picture_of_an_older_clip_is_told(tmp_path, cli, monkeypatch, drawn):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("rotctl.cli.commands.clips._draw_clip", refused)
+    keys = conf_dir() / "motion" / "keys" / "log_roll.yaml"
+    author = ("author-motion", keys, "--out", "mine.yaml", *(["--filmstrip"] if drawn else []))
+    why = "rotctl: no filmstrip: no OpenGL\n" if drawn else ""
+    assert cli(*author) == (0, "clip       mine.yaml\n", why)
+    (tmp_path / "mine.png").write_bytes(b"older")
+    older = "rotctl: warning: mine.png: is older than the clip, and no picture of it\n"
+    assert cli(*author) == (0, "clip       mine.yaml\n", why + older)
+    assert (tmp_path / "mine.png").read_bytes() == b"older"
+
+
+def refused(*_):
+    raise InputError("no OpenGL")
 
 
 @pytest.mark.usefixtures("drawing")

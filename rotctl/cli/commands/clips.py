@@ -169,15 +169,23 @@ def _clip_written(arguments: argparse.Namespace, clip: "Clip") -> Path:
 
 
 def _clip_shown(arguments: argparse.Namespace, model: "Model", clip: "Clip", out: Path) -> int:
-    """Say where a clip is; draw it if that is wanted and this machine can."""
+    """Say where a clip is; draw it if that is wanted and this machine can.
+
+    A picture that lies there may be one of the user's own, so it stays; but that is told.
+    """
     print(f"clip       {out}")
+    picture = out.with_suffix(".png")
     if arguments.filmstrip:
         try:
-            _draw_clip(model, clip, out.with_suffix(".png"), CLIP_FRAMES)
+            _draw_clip(model, clip, picture, CLIP_FRAMES)
         except InputError as error:
             print(f"rotctl: no filmstrip: {error}", file=sys.stderr)
         else:
-            print(f"filmstrip  {out.with_suffix('.png')}")
+            print(f"filmstrip  {picture}")
+            return 0
+    if picture.exists():
+        told = f"{picture}: is older than the clip, and no picture of it"
+        print(f"rotctl: warning: {told}", file=sys.stderr)
     return 0
 
 
