@@ -109,7 +109,7 @@ def test_one_line_for_what_does_not_fit(overrides, said):
 
 
 def test_times_of_rates_must_grow():
-    with pytest.raises(InputError, match="schedule: its times must grow"):
+    with pytest.raises(InputError, match=r"^behaviour\.course\.schedule: its times must grow$"):
         load(["behaviour=forward_roll", "+course=turn", "behaviour.course.schedule=[[2,1],[2,2]]"])
 
 

@@ -133,7 +133,7 @@ def test_a_schedule_takes_over_at_its_times():
     assert [pace.commanded(t) for t in (0.0, 1.9, 2.0, 4.9, 5.0, 50.0)] == [
         *(0.6, 0.6, 0.9, 0.9, 0.4, 0.4)
     ]
-    with pytest.raises(ValueError, match="schedule: its times must grow"):
+    with pytest.raises(ValueError, match="its times must grow"):
         replace(SETTINGS, schedule=((2.0, 0.9), (2.0, 0.4)))
 
 

@@ -16,8 +16,7 @@ from rotctl.control.settings import (
 )
 from rotctl.control.supervisor import Thresholds
 from rotctl.mechanics.merging import Merging
-from rotctl.mechanics.stature import Likeness
-from rotctl.settings.fields import Vector
+from rotctl.mechanics.stature import Likeness, scaled
 
 G = TypeVar("G", ControllerSettings, Gains)
 # By the kind of a task, of what its rows are in: N, N m; an acceleration is the same for all.
@@ -81,12 +80,7 @@ def _task(gains: TaskGains, by: Likeness, kind: str) -> TaskGains:
     unit = by.mass if kind in FORCES else by.torque if kind in TORQUES else 1.0
     turning = by.size if kind in ("attitude", "limits", "joints") else 1.0  # rad/s2: m/s2 over m
     return TaskGains(
-        weight=_times(gains.weight, turning**2 / unit**2),
-        stiffness=_times(gains.stiffness, by.time**-2),
-        damping=_times(gains.damping, 1.0 / by.time),
+        weight=scaled(gains.weight, turning**2 / unit**2),
+        stiffness=scaled(gains.stiffness, by.time**-2),
+        damping=scaled(gains.damping, 1.0 / by.time),
     )
-
-
-def _times(vector: Vector, factor: float) -> Vector:
-    x, y, z = vector
-    return x * factor, y * factor, z * factor

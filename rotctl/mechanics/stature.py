@@ -75,7 +75,7 @@ def grown(character: Character) -> Character:
 def _body(body: Body, by: Likeness, strength: float) -> Body:
     return replace(
         body,
-        position=_times(body.position, by.size),
+        position=scaled(body.position, by.size),
         joints=tuple(_joint(joint, by, strength) for joint in body.joints),
         geoms=tuple(_geom(geom, by.size) for geom in body.geoms),
     )
@@ -98,12 +98,13 @@ def _geom(geom: Geom, size: float) -> Geom:
     return replace(
         geom,
         size=geom.size * size,
-        start=_times(geom.start, size),
-        end=None if geom.end is None else _times(geom.end, size),
-        hull=geom.hull and tuple(_times(corner, size) for corner in geom.hull),
+        start=scaled(geom.start, size),
+        end=None if geom.end is None else scaled(geom.end, size),
+        hull=geom.hull and tuple(scaled(corner, size) for corner in geom.hull),
     )
 
 
-def _times(vector: Vector, factor: float) -> Vector:
+def scaled(vector: Vector, factor: float) -> Vector:
+    """Each of three numbers by a factor."""
     x, y, z = vector
     return x * factor, y * factor, z * factor

@@ -1,5 +1,6 @@
 """The validated, frozen dataclasses that settings everywhere in rotctl are made of."""
 
+from itertools import pairwise
 from typing import Annotated
 
 from pydantic import AfterValidator, AllowInfNan, ConfigDict, Field, Strict
@@ -52,3 +53,15 @@ def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 Names = Annotated[tuple[str, ...], AfterValidator(each_once)]
+
+
+Schedule = tuple[tuple[float, float], ...]  # times, and what holds from each on
+
+
+def _growing(schedule: Schedule) -> Schedule:
+    if any(later <= time for (time, _), (later, _) in pairwise(schedule)):
+        raise ValueError("its times must grow")
+    return schedule
+
+
+GROWING = AfterValidator(_growing)

@@ -7,14 +7,13 @@ turns back towards it by so many degrees a metre.
 """
 
 from bisect import bisect_right
-from itertools import pairwise
 from math import cos, radians, sin
 from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, Strict
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.settings.fields import STRICT, Finite, NonNegative
+from rotctl.settings.fields import GROWING, STRICT, Finite, NonNegative
 
 TIGHTEST = 1.0  # [m] of an arc's radius: on a tighter one a hand would stay where it is
 SHORTEST = 0.1  # [m] of a leg: less is no way, and an hour of it takes long to look up
@@ -64,13 +63,10 @@ class RatesSettings:
     """
 
     kind: Literal["rates"]
-    schedule: Annotated[tuple[tuple[NonNegative, Rate], ...], Field(min_length=1, max_length=1000)]
+    schedule: Annotated[
+        tuple[tuple[NonNegative, Rate], ...], Field(min_length=1, max_length=1000), GROWING
+    ]
     name: str = ""
-
-    def __post_init__(self) -> None:
-        times = [time for time, _ in self.schedule]
-        if any(later <= time for time, later in pairwise(times)):
-            raise ValueError("schedule: its times must grow")
 
     def make(self) -> "Rates":
         """The course of one run."""

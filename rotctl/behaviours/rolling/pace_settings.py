@@ -1,13 +1,12 @@
 """What a commanded pace is told: the motion's own swing, where it waits, and how it is kept."""
 
-from itertools import pairwise
 from math import inf
 from typing import Annotated, Literal
 
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
+from rotctl.settings.fields import GROWING, STRICT, Finite, Names, NonNegative, Positive
 
 Phase = Annotated[Finite, Field(ge=-1, le=1)]  # [rev] who means degrees is told
 Share = Annotated[NonNegative, Field(le=1)]
@@ -73,12 +72,9 @@ class PaceSettings:
     back: Annotated[NonNegative, Field(le=0.5)] = 0.0
     patience: Annotated[Positive, Field(le=SLIP)] = SLIP
     pose: Annotated[dict[str, Finite], Field(min_length=1)] | None = None
-    schedule: Annotated[tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000)] = ()
-
-    def __post_init__(self) -> None:
-        times = [time for time, _ in self.schedule]
-        if any(later <= time for time, later in pairwise(times)):
-            raise ValueError("schedule: its times must grow")
+    schedule: Annotated[
+        tuple[tuple[NonNegative, NonNegative], ...], Field(max_length=1000), GROWING
+    ] = ()
 
     def halts(self, first: float) -> Halts:
         """When it is told 0, and until when [s]; `first` is the command at the start."""
