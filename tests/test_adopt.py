@@ -237,9 +237,9 @@ def test_what_acts_otherwise_than_by_motors_is_told_and_left_out(tmp_path):
     held = {"<actuator>": section, '<body name="head"': '<body name="head" gravcomp="1"'}
     path.write_text(text(**held))
     assert adopt(path, "robot").notes[:4] == [
-        "1 equality constraints left out",
-        "1 tendons left out",
-        "1 actuators of no joint left out",
+        "equality constraints left out: 1",
+        "tendons left out: 1",
+        "actuators of no joint left out: 1",
         "gravcomp left out: all of its bodies weigh",
     ]
 
@@ -264,7 +264,7 @@ def test_a_body_whose_shape_is_left_out_counts_where_it_weighs(tmp_path):
     made = adopt(path, "robot")
     assert made.notes[:2] == [
         f"{tmp_path / 'nowhere.stl'}: no such file: left out",
-        "1 shapes that are meshes are left out",
+        "shapes that are meshes, left out: 1",
     ]
     assert build(load_with(made.character)).model.mass == pytest.approx(50.0)
 
@@ -274,7 +274,7 @@ def test_a_place_that_is_none_is_refused(tmp_path):
     path.write_text(text(**{'pos="0 0 1.2"': 'pos="0 0 nan"'}))
     with pytest.raises(InputError) as refused:
         adopt(path, "robot")
-    assert str(refused.value) == f"{path}: a number of its body_pos is none, NaN or infinity"
+    assert str(refused.value) == f"{path}: body_pos has NaN or infinity among its numbers"
 
 
 def test_a_limit_at_zero_has_no_sign(tmp_path, capsys):
@@ -448,7 +448,7 @@ def test_capsules_stand_for_a_mesh(tmp_path, name):
     assert np.ptp(ends[..., 1]) == pytest.approx(0.04, abs=2e-3)
     assert ends[..., 2] == pytest.approx(-0.03, abs=2e-3)
     without = adopt(path, "mine", meshes=False)
-    assert "2 shapes that are meshes are left out" in without.notes
+    assert "shapes that are meshes, left out: 2" in without.notes
 
 
 def along_the_axes(corners):
@@ -506,7 +506,7 @@ def test_a_mesh_that_cannot_be_read_is_left_out(tmp_path, file, reason):
     (robot / "robot.xml").write_text(whole.replace("<worldbody>", assets + "<worldbody>"))
     notes = adopt(robot / "robot.xml", "mine").notes
     assert notes[0].endswith(f"{reason}: left out")
-    assert notes[1] == "2 shapes that are meshes are left out"
+    assert notes[1] == "shapes that are meshes, left out: 2"
 
 
 def test_what_is_only_looked_at_touches_nothing(tmp_path):

@@ -259,7 +259,7 @@ def test_a_picture_of_an_older_clip_is_told(tmp_path, cli, monkeypatch, drawn):
     why = "rotctl: no filmstrip: no OpenGL\n" if drawn else ""
     assert cli(*author) == (0, "clip       mine.yaml\n", why)
     (tmp_path / "mine.png").write_bytes(b"older")
-    older = "rotctl: warning: mine.png: is older than the clip, and no picture of it\n"
+    older = "rotctl: warning: mine.png: is older than the clip and does not show it\n"
     assert cli(*author) == (0, "clip       mine.yaml\n", why + older)
     assert (tmp_path / "mine.png").read_bytes() == b"older"
 

@@ -443,7 +443,7 @@ def test_a_robots_csv(roll, plain, robot, tmp_path, how):
 @pytest.mark.parametrize(
     ("column", "called", "why"),
     [
-        ("knee_l", "left_knee", "'left_knee' is none"),
+        ("knee_l", "left_knee", "'left_knee' is none of them"),
         ("knee_l", "knee_r", "one is missing or comes twice"),
     ],
 )

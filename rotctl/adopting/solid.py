@@ -50,11 +50,11 @@ def solid(
     notes += _unheeded(root)
     missing = _keep_shapes(root, known if meshes else set())
     if missing:
-        notes.append(f"{missing} shapes that are meshes are left out")
+        notes.append(f"shapes that are meshes, left out: {missing}")
     mj = compiled(path, root)
     for name in _PLACES:
         if not np.isfinite(getattr(mj, name)).all():
-            raise InputError(f"{path}: a number of its {name} is none, NaN or infinity")
+            raise InputError(f"{path}: {name} has NaN or infinity among its numbers")
     if mj.body_gravcomp.any():
         notes.append("gravcomp left out: all of its bodies weigh")
     if proxies:
@@ -67,7 +67,7 @@ def _unheeded(root: ElementTree.Element) -> list[str]:
     inside = {part: [child for each in root.findall(part) for child in each] for part in _ACTING}
     inside["actuator"] = [child for child in inside["actuator"] if "joint" not in child.attrib]
     counts = {what: len(inside[part]) for part, what in _ACTING.items()}
-    return [f"{count} {what} left out" for what, count in counts.items() if count]
+    return [f"{what} left out: {count}" for what, count in counts.items() if count]
 
 
 def _keep_shapes(root: ElementTree.Element, known: set[str]) -> int:

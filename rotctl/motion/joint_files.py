@@ -171,7 +171,7 @@ def _positions(
     hinges = _hinges(mj)
     other = [name for name in names if name not in hinges]
     if len(other) < len(names) and sorted(names) != sorted(hinges):
-        why = f"{other[0]!r:.60} is none" if other else "one is missing or comes twice"
+        why = f"{other[0]!r:.60} is none of them" if other else "one is missing or comes twice"
         raise InputError(
             f"{path}: names of joints that are only in part the model's: {why}; "
             f"its joints: {', '.join(hinges):.300}"

@@ -184,7 +184,7 @@ def _clip_shown(arguments: argparse.Namespace, model: "Model", clip: "Clip", out
             print(f"filmstrip  {picture}")
             return 0
     if picture.exists():
-        told = f"{picture}: is older than the clip, and no picture of it"
+        told = f"{picture}: is older than the clip and does not show it"
         print(f"rotctl: warning: {told}", file=sys.stderr)
     return 0
 

@@ -37,7 +37,7 @@ class DiveCriteria:
         angle: of the line from the feet to the hands, off the vertical at entry [deg].
         straight: pose at entry by joint name [rad]; joints not named are not looked at.
         bent: off that pose at most [deg].
-        clearance: from the platform, on the way down [m].
+        clearance: from where it last stood, on the way down [m].
         held: upside down on the platform before it, if asked for: a dive from the hands, which are
             at the edge as it takes off; its way down begins where the centre of mass is below that.
     """
