@@ -29,6 +29,7 @@ pytestmark = pytest.mark.skipif(
 
 
 EXACT = 1e-8  # where both took the same way: 1e-11 of 6,000 states
+FORCE = 1e-6  # against each other two contacts press as only a small weight says
 ALIKE = 0.1  # [N m]
 
 
@@ -87,7 +88,8 @@ def test_same_torques_and_contacts_as_the_reference(overrides):
         if not (fast.fallback or slow.fallback):
             for name in ("torque", "force", "rates_predicted", "blend"):
                 value = getattr(slow, name)
-                within = EXACT * max(100.0, np.abs(value).max(initial=0.0))
+                exact = FORCE if name == "force" else EXACT
+                within = exact * max(100.0, np.abs(value).max(initial=0.0))
                 assert getattr(fast, name) == pytest.approx(value, abs=within), name
         else:
             assert_as_good(scenario, asked)

@@ -13,7 +13,7 @@ RATES = [(30, 8), (60, 4), (120, 2), (240, 1)]  # [Hz], physics steps a control 
 
 
 @pytest.mark.parametrize(("rate", "substeps"), RATES)
-@pytest.mark.parametrize("behaviour", ["forward_roll_1", "backward_roll_1"])
+@pytest.mark.parametrize("behaviour", ["forward_roll_2", "backward_roll_1"])
 def test_it_rolls_at_any_rate(rate, substeps, behaviour):
     """The physics' own step is the same. Of three starts two or more turn so far in 4 s."""
     rates = [f"controller.rate={rate}", f"physics.substeps={substeps}"]

@@ -27,8 +27,8 @@ SPACE = {
     "title": "A small search",
     "base": ["behaviour=forward_roll_1"],
     "parameters": [
-        {"key": "behaviour.poses.a.knee", "low": 1.0, "high": 2.7, "unit": "rad"},
-        {"key": "behaviour.poses.b.knee", "low": 0.5, "high": 2.7, "unit": "rad"},
+        {"key": "behaviour.poses.a.knee", "low": 1.0, "high": 2.75, "unit": "rad"},
+        {"key": "behaviour.poses.b.knee", "low": 0.5, "high": 2.75, "unit": "rad"},
         {
             "key": "controller.tasks.linear.damping.0",
             "low": 1.0,
