@@ -12,6 +12,8 @@ from rotctl.maths.rotations import Array, length
 from rotctl.mechanics.hulls import corners
 
 LEAST_SEEN = 0.003  # [m] radius, below which a shape is not even looked at
+POINT = 0.02  # [m] radius of the ball that stands for a body without a shape, thinner than limbs
+LEAST_MASS = 1e-4  # [-] of all of it: MuJoCo takes no body that moves and has no mass
 _BOXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_MESH)
 
 
@@ -77,7 +79,7 @@ def stature(
     if not any(found.values()):  # meshes alone: as far as its bodies reach
         heights = data.xpos[list(bodies), 2]
         return float(heights.min()), float(heights.max())
-    all_of_it = [piece for b, some in found.items() for piece in some or [_weight(data, b)]]
+    all_of_it = [piece for b, some in found.items() for piece in some or [_point_mass(data, b)]]
     reaches = [_reach(piece) for piece in all_of_it]
     return min(low for low, _ in reaches), max(high for _, high in reaches)
 
@@ -89,10 +91,10 @@ def _reach(piece: Piece) -> tuple[float, float]:
     return low - piece.radius, high + piece.radius
 
 
-def _weight(data: mujoco.MjData, body: int) -> Piece:
-    """Of a body without a shape, which weighs all the same."""
+def _point_mass(data: mujoco.MjData, body: int) -> Piece:
+    """A body without a shape, which weighs all the same."""
     place = data.xipos[body]
-    return Piece(place, place, 0.02)
+    return Piece(place, place, POINT)
 
 
 def shapes(
@@ -104,9 +106,9 @@ def shapes(
     """
     mass = float(mj.body_mass[segment.body])
     solid = pieces(mj, data, segment.body, hulls=hulls)
-    solid = solid or [_weight(data, segment.body)]
+    solid = solid or [_point_mass(data, segment.body)]
     volume = [_volume(piece) for piece in solid]
-    shares = [max(mass, 1e-4 * total) / total * part / sum(volume) for part in volume]
+    shares = [max(mass, LEAST_MASS * total) / total * part / sum(volume) for part in volume]
     found = [
         _shape(f"{segment.name}_{k + 1}", piece, segment) | {"mass": round(share, 7)}
         for k, (piece, share) in enumerate(zip(solid, shares, strict=True))
