@@ -12,11 +12,14 @@ from scipy.spatial.transform import Rotation
 
 from rotctl.adopting import adopt
 from rotctl.adopting.meshes import box
+from rotctl.behaviours.rolling.waiting import Waiting
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.stature import grown
+from rotctl.motion import Clip, ReferenceSettings, make_reference_pair
+from rotctl.motion.author import Keys, author
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.settings.checking import checked
@@ -340,6 +343,39 @@ def test_a_start_bends_the_waist_by_what_a_chest_would(robot):
     start = draw(settings, model, "left", np.random.default_rng(0))
     assert start.pose[model.joint_names.index("waist_y")] == pytest.approx(0.5)
     assert np.count_nonzero(start.pose) == 1
+
+
+def by_offsets(model, pose):
+    clip = Clip(name="still", roll_about="left", joints={"knee": [0.0] * 12})
+    offsets = {joint: [angle] for joint, angle in pose.items()}
+    settings = ReferenceSettings(clip="", window=0.0, lead=0.0, offsets=offsets)
+    return make_reference_pair(model, clip, settings).start(0.0)
+
+
+def by_waiting(model, pose):
+    return Waiting(pose, model).settled(np.zeros(len(model.joint_names)), 1.0)
+
+
+def by_keys(model, pose):
+    keys = [{"turn": turn, "pose": pose} for turn in (0.0, 0.3, 0.6)]
+    made = author(model, checked(Keys, {"name": "a", "roll_about": "left", "keys": keys}), "mine")
+    return made.poses(model)[0]
+
+
+@pytest.mark.parametrize("bent", [by_offsets, by_waiting, by_keys])
+def test_whatever_bends_a_chest_bends_the_waist_of_who_has_none(robot, bent):
+    """The trunk is then as round as an adult's in the same words, within the joint's range."""
+    model = build(load_with(adopt(robot, "mine").character)).model
+    waist = model.joint_names.index("waist_y")
+    for pose, angle in (
+        ({"waist_y": 0.2, "chest_y": 0.3}, 0.5),
+        ({"chest_y": 0.3}, 0.3),
+        ({"chest_x": 0.3}, 0.0),  # it has no waist_x either
+        ({"waist_y": 1.2, "chest_y": 0.3}, np.radians(75.0)),
+    ):
+        found = bent(model, pose)
+        assert found[waist] == pytest.approx(angle, abs=1e-4)
+        assert np.count_nonzero(found) == (angle != 0.0)
 
 
 def test_what_the_joints_have_is_kept(tmp_path):

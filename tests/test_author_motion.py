@@ -51,6 +51,15 @@ def test_all_of_them_are_here():
     assert found == SHIPPED | FOUND_BY_SEARCH
 
 
+def test_a_body_that_is_straight_all_the_way_is_a_clip(tmp_path):
+    """As a log rolls: no joint has an angle, and the file says how long it is all the same."""
+    keys = [{"turn": turn, "pose": {}} for turn in (0.0, 0.3, 0.6)]
+    path = saved(tmp_path / "keys.yaml", roll_about="head", keys=keys)
+    made = author(adult(), load_keys(path), "adult")
+    assert made.samples == len(made.pelvis)
+    assert not made.poses(adult()).any()
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_the_shipped_clips_are_those_of_their_keys(name):
     folder = conf_dir() / "motion"

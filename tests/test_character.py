@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from rotctl.errors import InputError
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.character import Geom
-from rotctl.mechanics.model import acting
+from rotctl.mechanics.compilation import acting
 from rotctl.mechanics.momentum import read_momentum
 
 
@@ -17,7 +17,7 @@ def rebuilt(world, **changes):
     """The model with changed character settings."""
     config = world.config
     character = replace(config.character, **changes)
-    return models.build(character, config.terrain, config.physics, config.controller.rate)
+    return compilation.build(character, config.terrain, config.physics, config.controller.rate)
 
 
 def with_body(world, name, **changes):

@@ -16,6 +16,7 @@ from logs import changed
 from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
+from rotctl.cli import parser
 from rotctl.cli.main import main
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -406,6 +407,34 @@ def test_help_needs_no_heavy_import():
     )
     assert (finished.returncode, finished.stderr) == (0, "")
     assert "exit codes: 0 simulated" in finished.stdout
+
+
+NO_ENGINE = {
+    "list": "",
+    "new": "behaviour mine --from stand",
+    "ls": "{folder}",
+    "diff": "{log} {log}",
+    "inspect": "{log}",
+    "completion": "bash",
+}
+
+
+@pytest.mark.parametrize("name", NO_ENGINE)
+def test_what_simulates_nothing_does_not_wait_for_the_engine(made, tmp_path, name):
+    folder, _, log = made
+    words = [name, *NO_ENGINE[name].format(folder=folder, log=log).split()]
+    script = (
+        "import sys; from rotctl.cli.main import main\n"
+        f"assert main({words}) == 0\n"
+        "assert 'mujoco' not in sys.modules"
+    )
+    asked = [sys.executable, "-c", script]
+    finished = subprocess.run(asked, cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE)
+    assert (finished.returncode, finished.stderr) == (0, "")
+
+
+def test_those_are_the_commands_that_have_it_not():
+    assert set(NO_ENGINE) == set(parser.WITHOUT_MUJOCO)
 
 
 @pytest.mark.parametrize("name", COMMANDS)

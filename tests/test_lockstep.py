@@ -13,8 +13,8 @@ from rotctl.config.loading import load
 from rotctl.control import Controller, compiled
 from rotctl.errors import InputError
 from rotctl.log import read_attributes
-from rotctl.mechanics import model as models
-from rotctl.mechanics.bodies import is_character
+from rotctl.mechanics import compilation
+from rotctl.mechanics.bodies import is_character, lowest_and_highest
 from rotctl.mechanics.contacts import contact_jacobian, read_contacts
 from rotctl.mechanics.state import read
 from rotctl.runs.run import in_memory, run
@@ -60,7 +60,7 @@ class Person:
         character = world.config.character
         if damping is not None:
             character = replace(character, joint_damping=damping)
-        self.model = models.build(character, world.config.terrain, settings, 60.0)
+        self.model = compilation.build(character, world.config.terrain, settings, 60.0)
         self.stepper = LockstepStepper(self.model, settings)
         self.data = mujoco.MjData(self.model.mj)
 
@@ -243,7 +243,7 @@ def test_a_body_at_rest_neither_sinks_nor_gains_energy(world, settings):
     person.data.qpos[2:7] = [0.0, np.cos(0.7), 0.0, -np.sin(0.7), 0.0]  # on its back
     mujoco.mj_kinematics(person.model.mj, person.data)
     solid = (person.model.mj.geom_bodyid > 0) & (person.model.mj.geom_contype > 0)
-    lowest, _ = models.lowest_and_highest(person.model.mj, person.data, solid)
+    lowest, _ = lowest_and_highest(person.model.mj, person.data, solid)
     person.data.qpos[2] = 0.3 - lowest
     energies, heights, depth = [], [], []
     for _ in range(360):

@@ -10,7 +10,7 @@ import pytest
 from rotctl.choices.listing import choices
 from rotctl.config.loading import load, recorded
 from rotctl.log import RunLog
-from rotctl.mechanics.model import acting
+from rotctl.mechanics.compilation import acting
 from rotctl.report import stored_model
 from rotctl.runs.run import make
 from rotctl.runs.scenario import build, model_of

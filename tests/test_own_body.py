@@ -121,9 +121,10 @@ def test_roles_can_be_told(here):
         ("{nose: x}", "+character.roles.nose=x: no such role; valid: hips, chest, neck, head, "),
         ("{left_hips: torso}", "left_hips=torso: no such role; did you mean left_hip? valid: hips"),
         ("{right_knee: x}", "+character.roles.right_knee=x: no such body; its bodies: torso, "),
+        ("{head: pelvis}", "robot.xml: +character.roles.head=pelvis: is of the trunk"),
     ],
 )
-def test_a_role_that_there_is_not_is_told(roles, said):
+def test_a_role_that_cannot_be_is_told_by_its_key(roles, said):
     assert said in complaint(f"{INLINE[:-1]}, roles: {roles}}}")
 
 

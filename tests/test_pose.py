@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rotctl.control.pose import PoseTracker
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.state import read
 
 PERIOD = 1.0 / 60.0
@@ -103,7 +103,7 @@ def test_state_is_left_alone_and_calls_are_independent(world, steps, tracker, ga
 def floating(world):
     """The character without gravity, far from the ground, stepped at 60 Hz."""
     physics = replace(world.config.physics, gravity=(0.0, 0.0, 0.0), substeps=1)
-    return models.build(world.config.character, world.config.terrain, physics, 60.0)
+    return compilation.build(world.config.character, world.config.terrain, physics, 60.0)
 
 
 def hold(model, control, seconds=2.0):

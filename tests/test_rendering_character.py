@@ -6,7 +6,7 @@ import pytest
 
 from rotctl.config.loading import load
 from rotctl.mechanics.bodies import lowest_and_highest
-from rotctl.mechanics.model import build
+from rotctl.mechanics.compilation import build
 from rotctl.report import gl
 from rotctl.report.scene import opened
 from rotctl.runs import scenario

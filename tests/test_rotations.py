@@ -56,6 +56,10 @@ def test_advance_turns_in_the_world_frame(vector):
     assert_same_rotation(found, Rotation.from_rotvec(vector) * start)
 
 
+def test_scaled_is_each_number_by_the_factor():
+    assert rotations.scaled([1.0, -2.5, 0.0], -0.5) == (-0.5, 1.25, 0.0)
+
+
 def test_advance_keeps_the_length_at_one():
     quaternion = np.array([1.0, 0.0, 0.0, 0.0])
     for _ in range(5000):

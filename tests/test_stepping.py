@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.contacts import read_contacts
 from rotctl.simulation import stepping
 from rotctl.simulation.stepping import MujocoStepper
@@ -20,7 +20,7 @@ def substeps(request):
 @pytest.fixture
 def model(world, substeps):
     physics = replace(world.config.physics, substeps=substeps)
-    return models.build(world.config.character, world.config.terrain, physics, 60.0)
+    return compilation.build(world.config.character, world.config.terrain, physics, 60.0)
 
 
 def fresh(model, step):

@@ -11,7 +11,7 @@ from rotctl.config.loading import load
 from rotctl.config.schema import check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.terrain import FASTEST, Flat
 from rotctl.report import stored_model
@@ -290,7 +290,7 @@ def test_contacts_have_the_ground_s_friction(physics, friction):
     """Of two the larger counts, so that the character has the same."""
     config = load([f"physics={physics}"])
     flat = Flat(name="flat", kind="flat", friction=friction)
-    model = models.build(config.character, flat, config.physics, 60.0)
+    model = compilation.build(config.character, flat, config.physics, 60.0)
     data = mujoco.MjData(model.mj)
     mujoco.mj_forward(model.mj, data)
     data.qpos[2] -= 0.05

@@ -20,7 +20,7 @@ from rotctl.config.loading import load
 from rotctl.config.schema import Config
 from rotctl.control import Command, Controller
 from rotctl.errors import InputError
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.character import Body, Geom, Joint
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import read
@@ -168,4 +168,4 @@ def _model(config: Config, hinges: int) -> Model:
         for i in range(hinges - have)
     )
     larger = replace(character, bodies=character.bodies + extra)
-    return models.build(larger, config.terrain, config.physics, config.controller.rate)
+    return compilation.build(larger, config.terrain, config.physics, config.controller.rate)

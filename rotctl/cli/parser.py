@@ -70,7 +70,8 @@ COMMANDS = (
     *(searches.add_tune, clips.add_import, clips.add_author, clips.add_preview),
     completion.add_completion,
 )
-WITHOUT_MUJOCO = ("list", "ls", "inspect", "completion")  # and need not wait for its import
+# They need not wait for its import; `new` does of a start that is the state of a run.
+WITHOUT_MUJOCO = ("list", "new", "ls", "diff", "inspect", "completion")
 ELSEWHERE = {  # what writes to a file that one names
     "--filmstrip": "; it is drawn beside what is made; rotctl render RUN --filmstrip {} draws a "
     "run's elsewhere",

@@ -15,8 +15,9 @@ from rotctl.control.settings import (
     TaskGains,
 )
 from rotctl.control.supervisor import Thresholds
+from rotctl.maths.rotations import scaled
 from rotctl.mechanics.merging import Merging
-from rotctl.mechanics.stature import Likeness, scaled
+from rotctl.mechanics.stature import Likeness
 
 G = TypeVar("G", ControllerSettings, Gains)
 # By the kind of a task, of what its rows are in: N, N m; an acceleration is the same for all.

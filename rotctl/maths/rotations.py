@@ -117,6 +117,12 @@ def crossed(a: Numbers, b: Numbers) -> Triple:
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
+def scaled(vector: Numbers, factor: float) -> Triple:
+    """Each of three numbers by a factor."""
+    x, y, z = vector
+    return x * factor, y * factor, z * factor
+
+
 def _turn(x: float, y: float, z: float) -> tuple[float, float, float, float]:
     """Unit quaternion of a rotation vector."""
     angle = sqrt(x * x + y * y + z * z)

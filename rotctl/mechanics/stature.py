@@ -8,8 +8,8 @@ is a motion of the other, only slower, and it is as strong for its weight. `stre
 from dataclasses import dataclass, replace
 from math import sqrt
 
+from rotctl.maths.rotations import scaled
 from rotctl.mechanics.character import Body, Character, Drawn, Geom, Joint
-from rotctl.settings.fields import Vector
 
 
 @dataclass(frozen=True)
@@ -102,9 +102,3 @@ def _geom(geom: Geom, size: float) -> Geom:
         end=None if geom.end is None else scaled(geom.end, size),
         hull=geom.hull and tuple(scaled(corner, size) for corner in geom.hull),
     )
-
-
-def scaled(vector: Vector, factor: float) -> Vector:
-    """Each of three numbers by a factor."""
-    x, y, z = vector
-    return x * factor, y * factor, z * factor

@@ -102,13 +102,10 @@ def author(model: Model, keys: Keys, character: str) -> Clip:
 
 
 def _pose(model: Model, key: Key) -> Array:
-    pose = np.zeros(len(model.joint_names))
+    where = f"the key at turn {key.turn:g}"
     for name, angle in key.pose.items():
-        columns = model.motors(name, f"the key at turn {key.turn:g}")
-        low, high = model.joint_range[columns[0]]
-        if not low <= angle <= high:
-            raise InputError(
-                f"the key at turn {key.turn:g} has {name}={angle:g}, valid: {low:g} to {high:g}"
-            )
-        pose[columns] = angle
-    return pose
+        for low, high in model.joint_range[model.motors(name, where)].tolist():
+            if not low <= angle <= high:
+                raise InputError(f"{where} has {name}={angle:g}, valid: {low:g} to {high:g}")
+    (pose,) = model.posed(key.pose, where, 1)
+    return np.asarray(np.clip(pose, *model.joint_range.T))

@@ -91,7 +91,7 @@ def _added(model: Model, offsets: Mapping[str, Sequence[float]], samples: int) -
     phases = tau * np.arange(samples) / samples
     angles = np.zeros((samples, len(model.joint_names)))
     for name, harmonics in offsets.items():
-        columns = model.motors(name, "behaviour.reference.offsets")
+        columns = model.bending(name, "behaviour.reference.offsets")
         angles[:, columns] += _fourier(harmonics, phases)[:, None]
     return angles
 

@@ -24,8 +24,9 @@ def make_clip(model: Model, motion: Motion, **about: Any) -> Clip:
         else:
             joints[name] = samples
     quaternions = _rounded(motion.pelvis.as_quat(scalar_first=True), DIGITS + 1)
+    bent = {name: samples for name, samples in joints.items() if any(samples)}
     return Clip(
-        joints={name: samples for name, samples in joints.items() if any(samples)},
+        joints=bent or dict(list(joints.items())[:1]),  # straight all the way: one says how long
         pelvis=[(w, x, y, z) for w, x, y, z in quaternions],
         **about,
     )

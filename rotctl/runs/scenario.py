@@ -18,7 +18,7 @@ from rotctl.config.schema import Config
 from rotctl.config.sense import require_sense
 from rotctl.control import Controller, ControllerSettings
 from rotctl.control.similarity import similar
-from rotctl.mechanics import model as models
+from rotctl.mechanics import compilation
 from rotctl.mechanics.disturbance import DISTURBANCE_STREAM, Disturbance
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
@@ -154,7 +154,7 @@ def _stepper(physics: Physics, model: Model) -> Stepper:
 
 
 # Nobody changes a model, so runs that differ in their seed or gains share one.
-model_from = kept(most=8)(lru_cache(maxsize=8)(models.build))
+model_from = kept(most=8)(lru_cache(maxsize=8)(compilation.build))
 
 
 def model_of(config: Config) -> Model:
@@ -174,7 +174,7 @@ def model_parts(config: Config) -> tuple[Any, ...]:
 def _varied(config: Config, variation: Variation) -> Model:
     """The same with what differs in this run."""
     terrain = replace(config.terrain, friction=variation.friction * config.terrain.friction)
-    return models.build(config.character, terrain, *_world(config), variation.apply)
+    return compilation.build(config.character, terrain, *_world(config), variation.apply)
 
 
 def _world(config: Config) -> tuple[Physics, float, int, float]:

@@ -31,7 +31,7 @@ class Waiting:
         wanted = make_pose(model, angles, KEY)
         self.angles = np.full(len(wanted), np.nan)
         for joint in angles:
-            motors = model.motors(joint, KEY)
+            motors = model.bending(joint, KEY)
             self.angles[motors] = wanted[motors]
         self._own = np.isnan(self.angles)
 

@@ -15,6 +15,7 @@ from rotctl.cli.commands.arguments import (
     second,
 )
 from rotctl.cli.wording import one_line, printable
+from rotctl.engine import mujoco_without_opengl
 from rotctl.errors import InputError
 
 
@@ -45,6 +46,7 @@ def new(arguments: argparse.Namespace) -> int:
 
     kind, name, source, at = arguments.kind, arguments.name, arguments.source, arguments.at
     if kind == "start" and _is_run(source):
+        mujoco_without_opengl()
         from rotctl.runs.recorded_start import make as recorded
 
         print(recorded(name, opened_log(Path(source)), at))
