@@ -1,4 +1,4 @@
-"""Links of the pages lead somewhere, in a checkout and on the site, and the site has every page."""
+"""The pages: links lead somewhere, lines are no wider than others, all is on the site and told."""
 
 import pkgutil
 import re
@@ -15,6 +15,8 @@ DOCS = ROOT / "docs"
 SITE = sorted([*DOCS.glob("*.md"), *DOCS.glob("trials/*.md")])
 PAGES = [*SITE, ROOT / "README.md", ROOT / "CHANGELOG.md"]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+ALONE = re.compile(r"!?\[[^\]]*\]\([^)\s]+\)[.,]?")
+WIDTH = 110
 FENCE = re.compile(r"^```.*?^```", flags=re.MULTILINE | re.DOTALL)
 
 
@@ -33,6 +35,17 @@ def test_links_lead_somewhere(page):
         assert "://" in target or there.exists(), target
         if heading:
             assert heading in headings(there), target
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_lines_of_prose_are_no_longer_than_the_others(page):
+    """Tables, code and a link or a picture that stands alone cannot be broken."""
+    prose = FENCE.sub("", page.read_text(encoding="utf-8")).splitlines()
+    assert [
+        line
+        for line in prose
+        if len(line) > WIDTH and not line.startswith("|") and not ALONE.fullmatch(line)
+    ] == []
 
 
 def test_every_page_is_on_the_site():
