@@ -99,11 +99,11 @@ def sweep(
     from rotctl.results.table import table
     from rotctl.sweep import keep
     from rotctl.sweep.claimed import require_claims
+    from rotctl.sweep.engine_choice import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.plan import plan, planned
     from rotctl.sweep.points import points
-    from rotctl.sweep.workers import make_engine
 
     given, folder = _words(overrides), _path("out", out)
     if not isinstance(jobs, int | None):

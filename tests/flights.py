@@ -98,7 +98,7 @@ def fly(scenario, momentum, height, up, pitch, across=(0.0, 0.0)):
     """
     model, episode = scenario.model, Episode(scenario)
     data, law = episode.data, scenario.behaviour._laws["flight"]
-    sense, entry = law._sense, law._usual
+    sense, entry = law._sense, law.landing.usual
     wanted = np.array([across[0], sense * momentum, across[1]])
     spawn(model, data, law.tucking.pose(-0.6, entry), sense * pitch, height, up, wanted)
     first = None

@@ -3,7 +3,7 @@
 import pytest
 
 from rotctl.cli.main import main
-from rotctl.sweep import workers
+from rotctl.sweep import engine_choice
 from rotctl.sweep.engines import Failure, carried_out
 
 
@@ -33,7 +33,7 @@ class Here:
 
 def without_processes(patch):
     """Let the commands carry their tasks out here."""
-    patch.setattr(workers, "make_engine", lambda jobs, scheduler: Here())
+    patch.setattr(engine_choice, "make_engine", lambda jobs, scheduler: Here())
 
 
 def swept(out, *overrides):

@@ -8,8 +8,10 @@ import pytest
 
 from rotctl.config.loading import load
 from rotctl.metrics import appearance
+from rotctl.metrics import capsules as capsule_module
 from rotctl.metrics import skeleton as skeletons
-from rotctl.metrics.skeleton import Capsules, Skeleton, _compiled, _reference, overlap
+from rotctl.metrics.capsules import Capsules, overlap
+from rotctl.metrics.skeleton import Skeleton, _compiled, _reference
 from rotctl.native import library
 from rotctl.runs.scenario import model_of
 
@@ -72,7 +74,8 @@ def test_compiled_ends_and_overlaps_have_the_bits_of_the_reference(monkeypatch, 
     limbs, trunk, pairs = appearance._apart(mj)
     both = []
     for there in (library(), None):
-        monkeypatch.setattr(skeletons, "library", lambda there=there: there)
+        for module in (skeletons, capsule_module):
+            monkeypatch.setattr(module, "library", lambda there=there: there)
         body = Skeleton(mj, qpos)
         both.append([body.capsules(geoms, every) for geoms in (limbs, trunk)])
         both[-1].append(

@@ -12,7 +12,8 @@ from rotctl.behaviours.facing import frame_of
 from rotctl.behaviours.staged.conditions import Passed
 from rotctl.behaviours.staged.stages import Otherwise, mirrored
 from rotctl.behaviours.staged.touching import Touches
-from rotctl.behaviours.standing.wheeling import Carry, Place, Stride, share_of, ways
+from rotctl.behaviours.standing.tipping import share_of, ways
+from rotctl.behaviours.standing.wheeling import Carry, Place, Stride
 from rotctl.config.loading import load
 from rotctl.control.task import TASK
 from rotctl.metrics.criteria.acrobatic import judge

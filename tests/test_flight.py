@@ -51,7 +51,7 @@ def test_a_diver_spins_about_the_axis_of_greatest_inertia(behaviour, shape):
     diver = build(load([f"behaviour={behaviour}", f"behaviour.shape={shape}"]))
     law = diver.behaviour._laws["flight"]
     for amount, more in ((0.6, 1.1), (0.7, 1.1), (0.8, 1.1), (0.9, 1.1), (1.0, 1.0)):
-        inertia = inertia_by_sum(diver.model, law.tucking.pose(amount, law._usual))
+        inertia = inertia_by_sum(diver.model, law.tucking.pose(amount, law.landing.usual))
         others = np.linalg.eigvalsh(inertia[np.ix_([0, 2], [0, 2])])
         assert np.abs(inertia[1, [0, 2]]).max() < 1e-6  # both sides are alike: left is a main axis
         assert inertia[1, 1] > more * others.max(), amount
@@ -113,10 +113,12 @@ def test_the_time_to_the_landing_is_that_of_a_fall(dive):
     for up, height in ((2.5, 11.0), (-1.0, 6.0)):
         law = dive.behaviour._laws["flight"]
         data = mujoco.MjData(dive.model.mj)
-        spawn(dive.model, data, law.tucking.pose(1.0, law._usual), 0.0, height, up, np.zeros(3))
+        spawn(
+            dive.model, data, law.tucking.pose(1.0, law.landing.usual), 0.0, height, up, np.zeros(3)
+        )
         mujoco.mj_forward(dive.model.mj, data)
-        told = law.time(up, height, law._usual)
-        while data.subtree_com[1, 2] > law._usual.height:
+        told = law.landing.usual_time(up, height)
+        while data.subtree_com[1, 2] > law.landing.usual.height:
             mujoco.mj_step(dive.model.mj, data)
         assert data.time == pytest.approx(told, abs=0.01)
 

@@ -107,7 +107,7 @@ def test_a_fall_from_anywhere_is_looked_at_in_so_many_parts(law, monkeypatch):
 def test_a_flight_without_momentum_across_needs_no_arms():
     scenario = flier(1.5, HEAD_FIRST | {"levelling": LEVEL})
     episode, law = Episode(scenario), scenario.behaviour._laws["flight"]
-    pose = law.tucking.pose(-0.6, law._usual)
+    pose = law.tucking.pose(-0.6, law.landing.usual)
     spawn(scenario.model, episode.data, pose, 0.2, 11.0, 2.5, np.array([0.0, 45.0, 0.0]))
     for moment in episode:
         level = episode.memory.law.level if episode.memory.law else Levelled()
@@ -154,7 +154,7 @@ def test_a_shape_midway_is_taken_at_its_amount():
     dish = ARCHED | {"hip_y": 0.6}
     settings = HEAD_FIRST | {"midway": {"amount": 0.3, "pose": dish}}
     law = flier(1.5, settings).behaviour._laws["flight"]
-    model, usual = law._model, law._usual
+    model, usual = law._model, law.landing.usual
     assert np.allclose(law.tucking.pose(0.3, usual), make_pose(model, dish, "dish"))
     assert np.allclose(law.tucking.pose(1.0, usual), make_pose(model, TUCK, "tuck"))
     assert np.allclose(law.tucking.pose(0.0, usual), usual.pose)

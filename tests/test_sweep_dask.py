@@ -20,9 +20,9 @@ from rotctl.errors import InputError, RotctlError
 from rotctl.log import RunLog
 from rotctl.sweep import cluster as cluster_module
 from rotctl.sweep.apart import Death, apart
+from rotctl.sweep.engine_choice import make_engine
 from rotctl.sweep.engines import Failure
 from rotctl.sweep.task_size import Pace
-from rotctl.sweep.workers import make_engine
 
 pytest.importorskip("distributed", reason="Dask is not installed: pip install 'rotctl[cluster]'")
 

@@ -11,9 +11,9 @@ import sweep_tasks
 from sweep_cli import until
 
 from rotctl.errors import InputError
-from rotctl.sweep import local
+from rotctl.sweep import worker
+from rotctl.sweep.engine_choice import make_engine
 from rotctl.sweep.engines import Failure
-from rotctl.sweep.workers import make_engine
 
 
 @pytest.fixture(scope="module")
@@ -146,7 +146,7 @@ def test_what_was_open_and_is_closed_is_let_go_too():
     kept, closed = os.open(os.devnull, os.O_RDONLY), os.open(os.devnull, os.O_RDONLY)
     os.close(kept)
     os.close(closed)  # the lowest that are free
-    local._let_go({kept, closed})
+    worker._let_go({kept, closed})
     for descriptor in (kept, closed):
         assert os.fstat(descriptor).st_rdev == os.stat(os.devnull).st_rdev
         os.close(descriptor)

@@ -25,7 +25,7 @@ from rotctl.results.manifest import read
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 
-WORKER_STARTED = "rotctl.sweep.local.Worker.start"
+WORKER_STARTED = "rotctl.sweep.worker.Worker.start"
 
 
 def grid(count, duration="duration=3"):

@@ -1,5 +1,5 @@
 """Humanoids of others as characters: ``adopt``."""
 
-from rotctl.adopting.character import Adopted, adopt
+from rotctl.adopting.adoption import Adopted, adopt
 
 __all__ = ["Adopted", "adopt"]

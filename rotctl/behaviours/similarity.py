@@ -13,7 +13,7 @@ from rotctl.behaviours.aerial.flight_settings import FlightSettings
 from rotctl.behaviours.aerial.landing import LandingSettings
 from rotctl.behaviours.aerial.launch import Launch, Lean, Whirl
 from rotctl.behaviours.aerial.levelling import LevellingSettings
-from rotctl.behaviours.chain.chaining import RestSettings
+from rotctl.behaviours.chain.resting import RestSettings
 from rotctl.behaviours.chain.settings import ChainSettings, PartSettings
 from rotctl.behaviours.chain.ways import OnFeet, Rolls, Way
 from rotctl.behaviours.rolling.alighting import AlightingSettings

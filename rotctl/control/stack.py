@@ -10,21 +10,18 @@ apart, as contact forces alone meet them. With M qddot + C = S' tau + J' lambda,
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from rotctl.control.contact_rows import along, stopping
 from rotctl.control.kinds import KINDS, Rows
 from rotctl.control.settings import ContactGains, ControllerSettings, PoseGains
 from rotctl.control.task import Command
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
-from rotctl.mechanics.contacts import contact_jacobian
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.momentum import contact_momentum_maps
 from rotctl.mechanics.state import State
-
-LEAST_TANGENT = 1e-9  # a direction this near a normal has no tangent
 
 
 @dataclass(frozen=True)
@@ -170,12 +167,8 @@ def collect(
             them, as rows after those of the tasks, and the torques only where nothing solves.
     """
     keep = command.candidates(state)
-    frame, jacobian = _along(model, state, command.forward, keep)
-    fade = min(command.contact.damping, settings.rate)
-    stop = -fade * product(jacobian, state.velocity)
-    stop[::3] -= fade * fade * np.maximum(state.contacts.gap[keep], 0.0)
-    if command.contact.centripetal:
-        stop -= _centripetal(model, state, frame, keep)
+    frame, jacobian = along(model, state, command.forward, keep)
+    stop = stopping(model, state, command.contact, settings.rate, frame, jacobian, keep)
     tasks = _evaluate(command, model, state)
     motion = [task.rows for task in tasks if not task.momentum]
     momentum = [task.rows for task in tasks if task.momentum]
@@ -226,42 +219,6 @@ def _free_rates(model: Model, state: State, sees_disturbance: bool) -> Array:
         outside = state.data.qfrc_bias - state.bias
         rates += contact_momentum_maps(state.momentum, outside[None])[:, 0]
     return rates
-
-
-def _along(
-    model: Model, state: State, forward: Array, keep: NDArray[np.bool_]
-) -> tuple[Array, Array]:
-    """Frames (m, 3, 3) and rows (3m, nv) of contacts, their tangents turned about the normal.
-
-    The first then lies along `forward`, so that the friction pyramid's edges lie the same way
-    whatever the heading.
-    """
-    frame = state.contacts.frame[keep]
-    jacobian = contact_jacobian(model.mj, state.data, state.contacts)[np.repeat(keep, 3)]
-    rows = jacobian.reshape(-1, 3, model.mj.nv)
-    for k in range(len(frame)):
-        first, second = product(frame[k, 1:], forward).tolist()
-        length = (first * first + second * second) ** 0.5
-        if length < LEAST_TANGENT:
-            continue
-        c, s = first / length, second / length
-        for array in (frame[k], rows[k]):
-            one, two = array[1].copy(), array[2].copy()
-            array[1], array[2] = c * one + s * two, c * two - s * one
-    return frame, jacobian
-
-
-def _centripetal(model: Model, state: State, frame: Array, keep: NDArray[np.bool_]) -> Array:
-    """Jdot qdot of contacts (3m,), along the rows of their frames (m, 3, 3) [m/s2].
-
-    Of the points of the body that touch: a sole that rolls on a radius r gains omega^2 r less.
-    """
-    found, moving = np.zeros((len(frame), 3)), np.zeros((3, model.mj.nv))
-    bodies, places = state.contacts.body[keep], state.contacts.position[keep]
-    for i, (body, place) in enumerate(zip(bodies.tolist(), places, strict=True)):
-        mujoco.mj_jacDot(model.mj, state.data, moving, None, place, body)
-        found[i] = product(frame[i], product(moving, state.velocity))
-    return found.ravel()
 
 
 def _evaluate(command: Command, model: Model, state: State) -> tuple[TaskRows, ...]:

@@ -10,10 +10,11 @@ from rotctl.caching import kept
 from rotctl.maths.rotations import Array
 from rotctl.metrics import across
 from rotctl.metrics.across import BEARING, HEAD, SIDES, at_hands
+from rotctl.metrics.capsules import overlap
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame, slots_taken
 from rotctl.metrics.loads import loads
 from rotctl.metrics.quantile import median, percentile
-from rotctl.metrics.skeleton import ROUND, Skeleton, overlap
+from rotctl.metrics.skeleton import ROUND, Skeleton
 
 COLUMNS = (
     Column("head_share", "Head's share of the ground's upward impulse", ""),

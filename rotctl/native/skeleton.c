@@ -1,4 +1,5 @@
-// metrics/skeleton.py: where bodies are in every row of a log and how deep capsules overlap, in the order of its sums.
+// metrics/skeleton.py and metrics/capsules.py: where bodies are in every row of a log and how deep capsules
+// overlap, in the order of their sums.
 #include "layout.h"
 #include "small.h"
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
-from rotctl.metrics.claims import simulated
+from rotctl.metrics.measured import simulated
 from rotctl.metrics.rates import wilson
 from rotctl.results.stored_runs import DONE
 from rotctl.results.table import Table

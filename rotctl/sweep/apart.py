@@ -16,7 +16,7 @@ from subprocess import Popen
 from typing import Any, TypeVar
 
 from rotctl.sweep.engines import Failure, ending
-from rotctl.sweep.local import serve
+from rotctl.sweep.worker import serve
 
 T = TypeVar("T")
 R = TypeVar("R")

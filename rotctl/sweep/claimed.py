@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
-from rotctl.metrics.claims import SUCCESS_RATE
 from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
 from rotctl.runs.summary import numbers

@@ -52,7 +52,8 @@ def _check_way(launch: Launch, flight: Flight, target: float) -> None:
     From a platform such a turn has the time and the room (a reverse dive); back onto the feet that
     took off it has not.
     """
-    if flight.bodies != launch.bodies or launch.forward * target > 0.0 or not launch.forward:
+    elsewhere = flight.landing.bodies != launch.bodies
+    if elsewhere or launch.forward * target > 0.0 or not launch.forward:
         return
     way = "forward" if launch.forward > 0.0 else "backward"
     turn = copysign(degrees(abs(target)) or 360.0, launch.forward)
@@ -64,12 +65,12 @@ def _check_way(launch: Launch, flight: Flight, target: float) -> None:
 
 def _check_turn(flight: Flight, target: float) -> None:
     """Raises InputError for a turn after which other parts come down first."""
-    if not flight.lands():
+    if not flight.landing.lands():
         near = [degrees(angle) for angle in (target - pi, target + pi)]
         turns = " or ".join(f"{angle:.0f}" for angle in sorted(near, key=abs) if abs(angle) > 1.0)
         raise InputError(
             f"{KEY}={degrees(target):g}: it would not come down on its "
-            f"{' or '.join(flight.bodies)}; half a turn less or more: {turns}"
+            f"{' or '.join(flight.landing.bodies)}; half a turn less or more: {turns}"
         )
 
 
@@ -118,4 +119,4 @@ def _time(model: Model, axes: Array, launch: Launch, flight: Flight, up: float) 
     """In the air, taking off upward at a speed [m/s], until it lands as usual [s]."""
     back = 2.0 * abs(up) / -float(model.gravity[2])  # [s] till it is as high as at take-off
     x, y, _ = (back * launch.forward * axes[0]).tolist()
-    return flight.falls(up, launch.height - model.ground.height(x, y))
+    return flight.landing.usual_time(up, launch.height - model.ground.height(x, y))

@@ -10,31 +10,27 @@ What is left to turn is theta_land - (theta + shape), where `shape` is the turn 
 of shape from here to the landing pose makes by itself. Shapes: see `aerial.tucking`.
 """
 
-from math import atan2, pi, radians, sqrt, tau
+from math import atan2, pi, radians, tau
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 
-from rotctl.behaviours.aerial.flight_settings import TUCK, EntrySettings, FlightSettings
-from rotctl.behaviours.aerial.landing import Contact, Landing
+from rotctl.behaviours.aerial.flight_settings import TUCK, FlightSettings
+from rotctl.behaviours.aerial.landing import Contact
 from rotctl.behaviours.aerial.levelling import Ahead, Levelled, Levelling
+from rotctl.behaviours.aerial.touch_down import TouchDown
 from rotctl.behaviours.aerial.tucking import Tucking
 from rotctl.behaviours.easing import smooth, soonest
 from rotctl.behaviours.facing import Frame
 from rotctl.behaviours.scene import Scene
 from rotctl.errors import InputError
-from rotctl.maths.rotations import Array, crossed, dot, quaternion_from_rotation_vector
-from rotctl.mechanics.bodies import ROOT_BODY, body_ids, is_character, lowest_and_highest
+from rotctl.maths.rotations import Array, crossed, dot
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.shape import Shapes
 from rotctl.mechanics.state import State
-from rotctl.motion import make_pose
 from rotctl.suggestion import instead
 
 GRAVITY = 9.81  # [m/s2] good enough to say where it comes down: on the floor or beyond it
-ROUNDING = 1e-6  # [m]
-LEAST_TIME = 1e-3  # [s] to the landing
 
 
 class Aloft(NamedTuple):
@@ -58,7 +54,12 @@ class Aloft(NamedTuple):
 
 
 class Flight:
-    """The regulator of one run's flight."""
+    """The regulator of one run's flight.
+
+    Attributes:
+        landing: how it ends.
+        tucking: its shapes.
+    """
 
     def __init__(
         self,
@@ -87,14 +88,7 @@ class Flight:
         self._axis = frame.trunk_axis
         self._target, self._sense = target + radians(settings.first), 1.0 if target >= 0.0 else -1.0
         self._pitches = bool(frame.trunk_axis[1])  # a landing leans about left
-        self._feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
-        if settings.entry:
-            self._usual = self._entry(settings.entry, f"{key}.entry")
-        elif self._feet:
-            self._usual = self._feet.at(0.0)
-        landing = settings.entry or settings.feet
-        assert landing  # as the settings ask for
-        self.bodies = landing.bodies
+        self.landing = TouchDown(settings, model, self._axis, self._target, key)
         self._shapes = Shapes(model)
         self._levelling: Levelling | None = None
         level = settings.levelling
@@ -105,37 +99,8 @@ class Flight:
             self._levelling = Levelling(level, model, self._shapes, settings.change, aside)
         opening = settings.opened_for(target)
         self.tucking = Tucking(
-            settings, model, self._shapes, self._axis, self._usual, opening, key, shape
+            settings, model, self._shapes, self._axis, self.landing.usual, opening, key, shape
         )
-
-    def _entry(self, entry: EntrySettings, key: str) -> Contact:
-        """The body as it lands."""
-        attitude, pose = radians(entry.attitude), make_pose(self._model, entry.pose, f"{key}.pose")
-        data = self._landed(attitude, pose)
-        low = self._lowest(data, body_ids(self._model.mj, entry.bodies, f"{key}.bodies"))
-        return Contact(attitude, pose, 0.0, float(data.subtree_com[ROOT_BODY, 2]) - low)
-
-    def _landed(self, attitude: float, pose: Array) -> mujoco.MjData:
-        """The body at the target and past it by an attitude [rad], in a pose (nu,) [rad]."""
-        mj, data = self._model.mj, mujoco.MjData(self._model.mj)
-        data.qpos[3:7] = quaternion_from_rotation_vector((self._target + attitude) * self._axis)
-        data.qpos[self._model.angles] = pose
-        mujoco.mj_kinematics(mj, data)
-        mujoco.mj_comPos(mj, data)
-        return data
-
-    def _lowest(self, data: mujoco.MjData, bodies: list[int]) -> float:
-        """Lowest z of what is solid of these bodies [m]."""
-        mj = self._model.mj
-        chosen = np.isin(mj.geom_bodyid, bodies) & (mj.geom_contype > 0)
-        return lowest_and_highest(mj, data, chosen)[0]
-
-    def lands(self) -> bool:
-        """Whether what is to land is lowest after the turn that is the target."""
-        data, mj = self._landed(self._usual.attitude, self._usual.pose), self._model.mj
-        own = np.flatnonzero(is_character(mj)).tolist()
-        landing = body_ids(mj, self.bodies)
-        return self._lowest(data, landing) <= self._lowest(data, own) + ROUNDING
 
     def least_momentum(self, turns: float, gone: float, time: float) -> float:
         """About its axis, that makes a turn in the tightest shape [kg m2/s].
@@ -145,40 +110,11 @@ class Flight:
                 take-off [rad].
             time: in the air [s].
         """
-        leans = self._sense * self._usual.attitude if self._pitches else 0.0
+        leans = self._sense * self.landing.usual.attitude if self._pitches else 0.0
         need = turns + leans - gone
         return max(need, 0.0) / (
             time * self.tucking.mean_slowness(self._settings.tightest, 0.0, time)
         )
-
-    def falls(self, up: float, over: float) -> float:
-        """Time to a landing as usual [s]; see `time`."""
-        return self.time(up, over, self._usual)
-
-    def contact(self, momentum: float, forward: float, up: float, over: float) -> Contact:
-        """The body as it is to land.
-
-        Args:
-            momentum: about left [kg m2/s].
-            forward, up: velocity of the centre of mass [m/s], and
-            over: its height over the ground where it lands [m], at one and the same instant.
-        """
-        if self._feet is None:
-            return self._usual
-        fall = -float(self._model.gravity[2])
-        height = self._usual.height
-        down = sqrt(up * up + 2.0 * fall * max(over - height, 0.0))
-        return self._feet.at(self._feet.offset(momentum, forward, down, height))
-
-    def time(self, up: float, over: float, contact: Contact) -> float:
-        """To the landing [s]: 2 v / g, [AlBorno2014], and more where it lands lower.
-
-        Args:
-            up: velocity of the centre of mass [m/s]; over: its height over the ground [m].
-        """
-        fall = -float(self._model.gravity[2])
-        higher = max(over - contact.height, 0.0)
-        return max((up + sqrt(up * up + 2.0 * fall * higher)) / fall, LEAST_TIME)
 
     def turned(self, scene: Scene) -> float:
         """theta: how far the pelvis has turned from upright [rad]."""
@@ -211,8 +147,8 @@ class Flight:
         x, y = (scene.state.momentum.com + forward * abs(up) / GRAVITY * scene.axes[0])[:2].tolist()
         over, momentum = high + scene.floor - scene.model.ground.height(x, y), 0.0
         for _ in range(2):  # how it lands depends on its momentum, too
-            contact = self.contact(momentum if self._pitches else 0.0, forward, up, over)
-            time = self.time(up, over, contact)
+            contact = self.landing.contact(momentum if self._pitches else 0.0, forward, up, over)
+            time = self.landing.time(up, over, contact)
             slowness = self.tucking.mean_slowness(amount, 0.0, time)
             along = self._sense * momentum
             momentum = self._sense * self.left_to_turn(scene, contact, along) / (time * slowness)
@@ -232,8 +168,8 @@ class Flight:
         x, y, z = momentum.com.tolist()
         up, pitching = float(momentum.com_velocity[2]), dot(momentum.angular, left)
         over = z - scene.model.ground.height(x, y)
-        contact = self.contact(pitching, dot(momentum.com_velocity, ahead), up, over)
-        time = self.time(up, over, contact)
+        contact = self.landing.contact(pitching, dot(momentum.com_velocity, ahead), up, over)
+        time = self.landing.time(up, over, contact)
         late = time < 0.5 * settings.change  # too late for another shape to turn much
         turning = self._sense * dot(momentum.angular, scene.turning)
         need = 0.0 if late else self.left_to_turn(scene, contact, turning) - before.level.missed
@@ -242,11 +178,12 @@ class Flight:
         amount, rate = soonest(wanted, before.amount, before.rate, settings.change, period)
         gone = (scene.state.time - scene.begin.time) / settings.change
         pose = self.tucking.pose(amount, contact)
-        if self._feet and self._feet.legs_reach:
+        feet = self.landing.feet
+        if feet and feet.legs_reach:
             opened = 1.0 - self.tucking.held(time)
             turns = turning * time * self.tucking.mean_slowness(held, before.amount, time)
             missing = self.left_to_turn(scene, contact, turning) - turns
-            pose = self._feet.placed(pose, self._sense * opened * missing)
+            pose = feet.placed(pose, self._sense * opened * missing)
         pose += (1.0 - smooth(min(gone, 1.0))) * (before.first - pose)
         now = Aloft(amount, rate, held, before.first, pose, pose, before.level)
         if self._levelling:

@@ -6,11 +6,8 @@ where that has none, a rest on the feet.
 """
 
 from functools import lru_cache
-from math import atan2, cos, degrees, fsum, radians
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
-
-from pydantic import Field
-from pydantic.dataclasses import dataclass as validated
+from math import atan2, degrees, fsum
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rotctl.behaviours.behaviour import Behaviour, Placement, Signals
 from rotctl.behaviours.chain import ways
@@ -26,31 +23,11 @@ from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
 
 if TYPE_CHECKING:  # which makes this one
     from rotctl.behaviours.chain.settings import ChainSettings
 
 Part = Staged | Rolling | Finishing
-
-
-@validated(frozen=True, config=STRICT)
-class RestSettings:
-    """When a part that has come to its last stage is over.
-
-    Attributes:
-        seconds: it has rested for so long [s].
-        feet: that alone touch the ground meanwhile.
-        lean: of the trunk at most [deg].
-        speed: of the centre of mass at most [m/s].
-        height: of it at least, as a share of that as the part began [-].
-    """
-
-    seconds: NonNegative
-    feet: Annotated[Names, Field(min_length=1)]
-    lean: Positive
-    speed: Positive
-    height: Positive
 
 
 class ChainMemory(NamedTuple):
@@ -206,16 +183,7 @@ class Chain:
         part = self._part(memory)
         if isinstance(part, Rolling) or not part.at_last(memory.inner):
             return False
-        rest, momentum = self._settings.rest, state.momentum
-        touching = set(state.contacts.body.tolist())
-        velocity = momentum.com_velocity
-        return (
-            bool(touching)
-            and touching <= self._feet
-            and float(state.trunk_axes[2, 2]) > cos(radians(rest.lean))
-            and dot(velocity, velocity) < rest.speed**2
-            and self._height(state) > rest.height * memory.height
-        )
+        return self._settings.rest.seen(state, self._feet, self._height(state), memory.height)
 
     def _facing(self, memory: ChainMemory, state: State, anew: bool) -> float:
         """Where its feet point, from +x towards +y [deg]: a trunk is turned sooner than they.

@@ -7,7 +7,8 @@ from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.chain import ways
-from rotctl.behaviours.chain.chaining import Chain, Part, RestSettings
+from rotctl.behaviours.chain.chaining import Chain, Part
+from rotctl.behaviours.chain.resting import RestSettings
 from rotctl.behaviours.chain.ways import Way, Ways
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.behaviours.staged.settings import StagedSettings

@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.behaviours.aerial.launch import leaning
+from rotctl.behaviours.aerial.pendulum import leaning
 from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.staged.touching import Airborne, Enters, Lands, Launched, Touches
 from rotctl.behaviours.standing.pivoting import Escapes
 from rotctl.behaviours.standing.poising import borne_at
-from rotctl.behaviours.standing.wheeling import beyond
+from rotctl.behaviours.standing.tipping import beyond
 from rotctl.maths.rotations import dot
 from rotctl.settings.fields import SPARSE, STRICT, Finite, Names, NonNegative, Positive
 

@@ -23,7 +23,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
-from rotctl.behaviours.aerial.launch import pendulum_rate
+from rotctl.behaviours.aerial.pendulum import pendulum_rate
 from rotctl.behaviours.named_bodies import NamesBodies
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks

@@ -1,65 +1,30 @@
 """Aims of a turn over hands and feet, a cartwheel: carry the body along the way, set limbs down.
 
-The *way* lies where the head goes as it tips: across what is turned about, to the side that the
-target excursion has. Hands and feet are put on one line along it, lowered over the turn,
-[AlBorno2014] stages 2 to 4; the centre of mass is carried along, and across it falls to the side
-of that line that the capture point is on, as a pendulum does.
+Hands and feet are put on one line along the way that the body tips (`standing.tipping`), lowered
+over the turn, [AlBorno2014] stages 2 to 4; the centre of mass is carried along, and across it falls
+to the side of that line that the capture point is on, as a pendulum does.
 """
 
 from math import copysign, radians
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
-from rotctl.behaviours.aerial.launch import Base, captured
+from rotctl.behaviours.aerial.pendulum import Base, captured
 from rotctl.behaviours.named_bodies import NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.standing.swinging import SOONEST, arrival, rise, velocity_of
+from rotctl.behaviours.standing.tipping import rests, share_of, ways
 from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
-from rotctl.maths.rotations import Array, cross, dot
+from rotctl.maths.rotations import Array, dot
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
 from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
 
-UP = np.array([0.0, 0.0, 1.0])
 SLOWEST = 1.0  # [rad/s] the slowest turn by which the time to a touch-down is reckoned
-
-
-class Ways(NamedTuple):
-    """Level unit vectors (3,), world: along the way, and across it, what is turned about."""
-
-    along: Array
-    across: Array
-
-
-def ways(scene: Scene) -> Ways:
-    """Of a behaviour that tips over to one side of what it turns about."""
-    along = copysign(1.0, scene.target) * cross(scene.turning, UP)
-    return Ways(along, scene.turning)
-
-
-def share_of(scene: Scene, angles: tuple[float, float]) -> float:
-    """How far it has turned from the one of these to the other [deg], from 0 to 1."""
-    first, last = angles
-    gone = copysign(1.0, scene.target) * scene.turned
-    return min(max((gone - radians(first)) / radians(last - first), 0.0), 1.0)
-
-
-def beyond(scene: Scene, bodies: tuple[str, ...]) -> float:
-    """How far the centre of mass is beyond the middle of these bodies, along the way [m]."""
-    found = body_ids(scene.model.mj, bodies)
-    x, y = support.middle(support.ends(scene.model, scene.state.data, found))
-    return dot(scene.state.momentum.com - np.array([x, y, 0.0]), ways(scene).along)
-
-
-def rests(scene: Scene, across: Array) -> float:
-    """Where along a level direction (3,) the body would come to rest [m]."""
-    momentum = scene.state.momentum
-    rate = support.pendulum_rate(scene.model, scene.state)
-    return dot(momentum.com, across) + dot(momentum.com_velocity, across) / rate
 
 
 @validated(frozen=True, config=STRICT)

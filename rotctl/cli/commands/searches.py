@@ -45,7 +45,7 @@ def tune(arguments: argparse.Namespace) -> int:
     """Search for config values."""
     from contextlib import closing
 
-    from rotctl.sweep.workers import make_engine
+    from rotctl.sweep.engine_choice import make_engine
     from rotctl.tune import result
     from rotctl.tune.search import Watch, prepare, tune
 

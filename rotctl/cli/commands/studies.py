@@ -52,8 +52,8 @@ def judge(arguments: argparse.Namespace) -> int:
     from rotctl.results.group_table import markdown
     from rotctl.results.groups import grouped
     from rotctl.sweep.criteria import criteria
+    from rotctl.sweep.engine_choice import make_engine
     from rotctl.sweep.judging import judge
-    from rotctl.sweep.workers import make_engine
 
     folder = run_folder(arguments.folder)
     if not folder.exists():  # before what is missing besides

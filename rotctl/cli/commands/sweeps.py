@@ -52,13 +52,13 @@ def sweep(arguments: argparse.Namespace) -> int:
     from rotctl.results import experiments, manifest
     from rotctl.sweep import keep
     from rotctl.sweep.claimed import require_claims
+    from rotctl.sweep.engine_choice import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
     from rotctl.sweep.plan import plan, planned
     from rotctl.sweep.points import count, points
     from rotctl.sweep.progress import shown
-    from rotctl.sweep.workers import make_engine
 
     if arguments.retries < 0:
         raise InputError(f"--retries={arguments.retries}: must be at least 0")

@@ -10,7 +10,8 @@ from markupsafe import Markup
 
 from rotctl import __version__
 from rotctl.files import encoded
-from rotctl.metrics.claims import NOT_REPRODUCED, NOT_TESTED, PARTLY, REPRODUCED, SUCCESS_RATE
+from rotctl.metrics.claims import NOT_REPRODUCED, NOT_TESTED, PARTLY, REPRODUCED
+from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.report.policy import BESIDE, policy, this
 from rotctl.report.site import words
 

@@ -9,16 +9,8 @@ from typing import Any
 import pandas as pd
 
 from rotctl.metrics import appearance
-from rotctl.metrics.claims import (
-    SUCCESS_RATE,
-    Judged,
-    Measured,
-    in_which,
-    judge,
-    measured,
-    overall,
-    picked,
-)
+from rotctl.metrics.claims import Judged, judge, overall
+from rotctl.metrics.measured import SUCCESS_RATE, Measured, in_which, measured, picked
 from rotctl.report.site.grid import labels
 from rotctl.report.site.words import kind, values
 from rotctl.report.title import plain

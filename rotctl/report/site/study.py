@@ -15,11 +15,11 @@ from rotctl.metrics.claims import (
     NOT_TESTED,
     PARTLY,
     REPRODUCED,
-    SUCCESS_RATE,
     VERDICTS,
     Judged,
     overall,
 )
+from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.report.site.rows import Row, rows
 from rotctl.report.site.words import quantity
 from rotctl.results.experiments import Experiment

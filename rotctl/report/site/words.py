@@ -5,8 +5,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from rotctl.metrics import appearance, pace
-from rotctl.metrics.claims import SUCCESS_RATE, Claim, Judged, Measured
+from rotctl.metrics.claims import Claim, Judged
 from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.measured import SUCCESS_RATE, Measured
 from rotctl.report.title import plain
 
 QUANTITIES = {
