@@ -69,23 +69,25 @@ def test_nothing_of_it_touches_the_platform_once_it_has_left(back):
     _, log = back
     first, last = dive.longest_flight(log)
     assert last > dive.entry(log)
-    assert dive._clearance(log, dive.entry(log), -1.0) > 0.3
+    assert dive._clearance(log, dive.entry(log), -1.0, dive._stood) > 0.3
     assert first < dive.entry(log)
 
 
-def test_the_clearance_is_how_near_it_comes_to_where_it_last_stood(back):
-    """By kinematics of the logged states, from the highest one on; backward is along x here."""
+def test_the_clearances_are_how_near_it_comes_to_where_it_last_stood_and_to_the_edge(back):
+    """And to the edge; by kinematics of the logged states, from the highest one on, along x."""
     scenario, log = back
     first, row = dive.longest_flight(log)[0], dive.entry(log)
     stood = log["contacts/position"][first - 1][log["contacts/body"][first - 1] >= 0]
-    toes, floor = stood[:, 0].max(), stood[0, 2]
     top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
-    near = np.inf
-    for each in range(top, row):
-        for place in ends(scenario, log, each):
-            beyond, over = max(place[0] - toes, 0.0), max(place[2] - floor, 0.0)
-            near = min(near, np.hypot(beyond, over))
-    assert dive._clearance(log, row, -1.0) == pytest.approx(near, abs=1e-3)
+    found = dive.measure(log, scenario.config.criteria, -540.0, PERIOD)
+    for measured, (x, z), within in (
+        (found.clearance, (stood[:, 0].max(), stood[0, 2]), 1e-3),
+        (found.edge_clearance, (scenario.config.terrain.edge, 0.0), 0.01),
+    ):
+        places = [place for each in range(top, row) for place in ends(scenario, log, each)]
+        near = min(np.hypot(max(p[0] - x, 0.0), max(p[2] - z, 0.0)) for p in places)
+        assert measured == pytest.approx(near, abs=within)
+    assert found.edge_clearance < found.clearance - 0.2
 
 
 def test_who_never_enters_has_no_numbers(back):

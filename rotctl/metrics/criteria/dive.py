@@ -5,6 +5,7 @@ are tasks of kind point with the aim `watch`, whose error is the way from there 
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -19,12 +20,14 @@ from rotctl.settings.fields import STRICT, Finite, Positive
 
 PLATFORM = 0.0  # [m] height of its top
 WATCHED = ("hand", "foot", "head", "pelvis")  # tasks whose points are told, on both sides
+Corner = Callable[[Arrays, int, np.ndarray], tuple[float, float]]
 NEAREST = 90.0  # [deg] off the target: beyond, another number of half revolutions is nearer
 COLUMNS = (
     Column("entry_angle", "Line from the feet to the hands off the vertical at entry", "deg"),
     Column("entry_sag", "The part of it in the plane of the dive", "deg"),
     Column("bent_most", "Joint furthest off the straight pose at entry", "deg"),
     Column("clearance", "Nearest to where it last stood, on the way down", "m"),
+    Column("edge_clearance", "Nearest to the platform's edge, on the way down", "m"),
     Column("entry_time", "Time of the entry", "s"),
 )
 
@@ -60,6 +63,7 @@ class DiveMetrics:
     entry_sag: float
     bent_most: float
     clearance: float
+    edge_clearance: float
     entry_time: float
 
 
@@ -97,6 +101,7 @@ def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -
     row = entry(log)
     if row is None:
         return DiveMetrics(*[math.nan] * len(COLUMNS))
+    sense, held = math.copysign(1.0, target), criteria.held is not None
     line = _mean(log, ("hand_l", "hand_r"))[row] - _mean(log, ("foot_l", "foot_r"))[row]
     ahead, left, up = frame(log)
     x, y, z = (float((line * axis).sum()) for axis in (ahead, left, up))
@@ -104,7 +109,8 @@ def measure(log: Arrays, criteria: DiveCriteria, target: float, period: float) -
         entry_angle=math.degrees(math.atan2(math.hypot(x, y), -z)),
         entry_sag=math.degrees(math.atan2(x, -z)),
         bent_most=_bent(log, criteria)[row],
-        clearance=_clearance(log, row, math.copysign(1.0, target), criteria.held is not None),
+        clearance=_clearance(log, row, sense, _stood, held),
+        edge_clearance=_clearance(log, row, sense, _edge, held),
         entry_time=row * period,
     )
 
@@ -142,8 +148,8 @@ def _whole(joint: str) -> str:
     return joint.removesuffix("_l").removesuffix("_r")
 
 
-def _clearance(log: Arrays, row: int, sense: float, hands: bool = False) -> float:
-    """How near the watched points come to where it last stood, or behind it [m].
+def _clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool = False) -> float:
+    """How near the watched points come to a corner of the platform, or behind it [m].
 
     Who turns backward (`sense` -1) goes backward.
     Counted from the highest point of the flight on: before it the feet are still at the edge. Or,
@@ -156,14 +162,34 @@ def _clearance(log: Arrays, row: int, sense: float, hands: bool = False) -> floa
     heights = floats(log, "trajectory/com")[first:row, 2]
     top = first + int(np.argmax(heights < PLATFORM if hands else heights))
     ahead, up = sense * frame(log)[0], frame(log)[2]
-    stood = np.asarray(log["contacts/position"])[first - 1]
-    used = np.asarray(log["contacts/body"])[first - 1] >= 0
-    edge = max(float((p * ahead).sum()) for p in stood[used])
-    floor = float(stood[used][0, 2])
+    end, floor = corner(log, first, ahead)
+    if math.isnan(end):
+        return math.nan
     near = math.inf
     for names in (("hand_l", "hand_r"), ("foot_l", "foot_r"), ("head",), ("pelvis",)):
         place = _mean(log, names)[top:row]
-        beyond = np.maximum((place * ahead).sum(axis=1) - edge, 0.0)
+        beyond = np.maximum((place * ahead).sum(axis=1) - end, 0.0)
         over = np.maximum((place * up).sum(axis=1) - floor, 0.0)
         near = min(near, float(np.sqrt(beyond**2 + over**2).min()))
     return near
+
+
+def _stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
+    """The foremost place that it last stood on, ahead and over the ground [m].
+
+    Args:
+        first: row of the flight.
+        ahead: (3,) the way that it goes.
+    """
+    stood = np.asarray(log["contacts/position"])[first - 1]
+    used = np.asarray(log["contacts/body"])[first - 1] >= 0
+    return max(float((p * ahead).sum()) for p in stood[used]), float(stood[used][0, 2])
+
+
+def _edge(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
+    """Where the ground below the centre of mass falls away, as `_stood`; NaN if it never does."""
+    falls = np.flatnonzero(np.diff(floats(log, "trajectory/ground_height")) < 0.0)
+    if not len(falls):
+        return math.nan, PLATFORM
+    com = floats(log, "trajectory/com")[falls[0] : falls[0] + 2]
+    return float((com * ahead).sum(axis=1).mean()), PLATFORM
