@@ -19,7 +19,8 @@ from rotctl.errors import InputError
 from rotctl.log import RunLog
 from rotctl.mechanics.stature import gains_likeness
 from rotctl.metrics.criteria.chain import Link, spans
-from rotctl.metrics.criteria.judge import ChainCriteria, judge
+from rotctl.metrics.criteria.judge import judge
+from rotctl.metrics.criteria.kinds import ChainCriteria
 from rotctl.report.stage_names import stage_names
 from rotctl.results.groups import grouped
 from rotctl.results.keys import value_at

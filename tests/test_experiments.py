@@ -10,7 +10,7 @@ from rotctl.choices.overrides import parsed
 from rotctl.cli.main import main
 from rotctl.config.loading import load
 from rotctl.errors import InputError
-from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.criteria.kinds import COLUMNS
 from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.results.experiments import copies, experiment, matrix, names, read
 from rotctl.results.table import TAKEN

@@ -18,6 +18,7 @@ from rotctl.report import filmstrip as module
 from rotctl.report import frame, gl, sheet
 from rotctl.report.filmstrip import filmstrip
 from rotctl.report.happenings import halts, happenings, stall
+from rotctl.report.moments import moments
 from rotctl.report.rows import window
 from rotctl.report.title import verdict
 from rotctl.runs.run import LOG_NAME, run
@@ -108,7 +109,7 @@ def test_a_force_from_outside_is_an_arrow_and_told(log, picture, tmp_path):
     pushed = changed(log, tmp_path, {"disturbance/wrench": wrench})
     filmstrip(pushed, picture, frames=1, start=0.2)
     assert coloured(frames_of(picture, 1, 1)[0], frame.OUTSIDE) > 120
-    (moment,) = frame.moments(pushed, [12])
+    (moment,) = moments(pushed, [12])
     assert moment.pushed == pytest.approx(log["trajectory/com"][12] + [0.0, 0.0, 0.3])
     assert moment.push == pytest.approx([-400.0, 0.0, 0.0])
     lines = sheet._lines(2000.0, 0.45, pushed=True)
@@ -340,11 +341,11 @@ def test_what_happens_in_a_run_is_told_in_the_next_frame(overrides, told, tmp_pa
     rows = module._rows(done, 8, None, None)
     assert any(18 <= one < 24 for one in rows)
     first = min(one for one in rows if one >= 18)
-    for one, moment in zip(rows, frame.moments(done, rows), strict=True):
+    for one, moment in zip(rows, moments(done, rows), strict=True):
         assert moment.happened == ((words,) if one == first else ())
-    (later,) = frame.moments(done, [30])
+    (later,) = moments(done, [30])
     assert later.happened == ()
-    (later,) = frame.moments(done, [30], lasting=0.5)
+    (later,) = moments(done, [30], lasting=0.5)
     assert later.happened == (words,)
 
 

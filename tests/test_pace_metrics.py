@@ -5,7 +5,7 @@ import pytest
 
 from rotctl.cli.run_wording import readable
 from rotctl.config.loading import load
-from rotctl.metrics.criteria.judge import settling
+from rotctl.metrics.criteria.kinds import settling
 from rotctl.metrics.pace import measure, off
 
 PERIOD = 1.0 / 60.0

@@ -5,7 +5,7 @@ import pytest
 
 from rotctl.config.loading import load
 from rotctl.log import LOG_NAME, RunLog
-from rotctl.report.frame import moments, turns_done
+from rotctl.report.moments import moments, turns_done
 from rotctl.report.skill import parts
 from rotctl.report.stage_names import stage_names
 from rotctl.runs.run import run

@@ -62,7 +62,7 @@ def readable(summary: dict[str, Any], settle: float = 0.0) -> str:
             measured.append(f"  disturbed    {_disturbed(summary)}")
     else:
         from rotctl.metrics import peaks  # numpy: what only asks for help needs none
-        from rotctl.metrics.criteria.judge import COLUMNS
+        from rotctl.metrics.criteria.kinds import COLUMNS
 
         known = [
             column

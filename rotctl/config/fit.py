@@ -16,7 +16,7 @@ from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
-from rotctl.metrics.criteria.judge import ChainCriteria, Criteria
+from rotctl.metrics.criteria.kinds import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
 from rotctl.settings.fields import Vector, ends
 

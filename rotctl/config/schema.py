@@ -18,7 +18,7 @@ from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.physics import Physics
 from rotctl.mechanics.plant import PlantSettings
 from rotctl.mechanics.terrain import Terrain
-from rotctl.metrics.criteria.judge import Criteria
+from rotctl.metrics.criteria.kinds import Criteria
 from rotctl.settings.checking import checked
 from rotctl.settings.complaints import brief, clip
 from rotctl.settings.documents import UNPRINTABLE

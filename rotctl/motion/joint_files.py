@@ -8,17 +8,16 @@ others (qpos, body_quat_w) or a column's name says so, and ends with it else.
 
 import csv
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.foreign import skeleton
-from rotctl.motion.capture import MAX_FRAMES, Capture, Joint, bounded
+from rotctl.motion.capture import MAX_FRAMES, Capture, bounded
+from rotctl.motion.robot import body_name, captured, depth, hinges_of
 from rotctl.motion.smpl import rate_of
 from rotctl.motion.untrusted import Arrays, arrays_of, numbers, text_of
 
@@ -51,59 +50,10 @@ def read_joints(path: Path, model: Path | None, rate: float | None = None) -> Ca
     if not 2 <= n <= MAX_FRAMES:
         raise InputError(f"{path}: {n} frames, valid: 2 to {MAX_FRAMES}")
     bounded(path, mj.nbody, n)
-    for name, most in zip(_hinges(mj), np.abs(positions[:, _ROOT:]).max(axis=0), strict=True):
+    for name, most in zip(hinges_of(mj), np.abs(positions[:, _ROOT:]).max(axis=0), strict=True):
         if most > MOST_TURNED:
             raise InputError(f"{path}: {name} is at {most:.0f} rad; are its angles degrees?")
-    return _capture(mj, positions, period * np.arange(n, dtype=np.float64))
-
-
-def _capture(mj: mujoco.MjModel, positions: Array, time: Array) -> Capture:
-    """Every body as a joint of a capture."""
-    data = mujoco.MjData(mj)
-    mujoco.mj_kinematics(mj, data)
-    rest, upright = data.xpos.copy(), Rotation.from_quat(data.xquat, scalar_first=True)
-    place, turned = np.empty((len(time), mj.nbody, 3)), np.empty((len(time), mj.nbody, 4))
-    for i, position in enumerate(positions):
-        data.qpos[:] = position
-        mujoco.mj_kinematics(mj, data)
-        place[i], turned[i] = data.xpos, data.xquat
-    joints = {}
-    for b in range(1, mj.nbody):
-        parent = int(mj.body_parentid[b])
-        joints[_name(mj, b)] = Joint(
-            parent=_name(mj, parent) if parent else "",
-            position=place[:, b],
-            rotation=Rotation.from_quat(turned[:, b], scalar_first=True) * upright[b].inv(),
-            rest=rest[b] - rest[1],
-        )
-    for b, end in _ends(mj).items():
-        name, whole = _name(mj, b), joints[_name(mj, b)]
-        joints[f"{name} end"] = replace(
-            whole,
-            parent=name,
-            position=place[:, b] + Rotation.from_quat(turned[:, b], scalar_first=True).apply(end),
-            rest=whole.rest + upright[b].apply(end),
-        )
-    return Capture(time, joints)
-
-
-def _ends(mj: mujoco.MjModel) -> dict[int, Array]:
-    """Bodies without children, and where in their frames the farthest solid geom is (3,) [m]."""
-    found = {}
-    for b in set(range(1, mj.nbody)) - set(mj.body_parentid.tolist()):
-        geoms = np.flatnonzero(mj.geom_bodyid == b)
-        solid = [g for g in geoms if mj.geom_contype[g] or mj.geom_conaffinity[g]] or geoms
-        if len(solid):
-            found[b] = max((mj.geom_pos[g] for g in solid), key=lambda at: float(np.abs(at).max()))
-    return found
-
-
-def _name(mj: mujoco.MjModel, body: int) -> str:
-    return mj.body(body).name or f"body {body}"
-
-
-def _hinges(mj: mujoco.MjModel) -> list[str]:
-    return [mj.joint(j).name for j in range(1, mj.njnt)]
+    return captured(mj, positions, period * np.arange(n, dtype=np.float64))
 
 
 def _from_csv(path: Path, mj: mujoco.MjModel) -> Array:
@@ -168,7 +118,7 @@ def _positions(
     Raises:
         InputError: it has some.
     """
-    hinges = _hinges(mj)
+    hinges = hinges_of(mj)
     other = [name for name in names if name not in hinges]
     if len(other) < len(names) and sorted(names) != sorted(hinges):
         why = f"{other[0]!r:.60} is none of them" if other else "one is missing or comes twice"
@@ -185,17 +135,17 @@ def _by_places(path: Path, mj: mujoco.MjModel, places: Array, root: Array, angle
     """Whichever order puts the bodies where the file has them: the model's, or level by level."""
     if places.shape[1] != mj.nbody - 1:
         return _positions(path, mj, places[:, 0], root, angles, [])
-    hinges, found = _hinges(mj), []
+    hinges, found = hinges_of(mj), []
     chosen = np.unique(np.linspace(0, len(angles) - 1, LOOKED_AT).astype(int))
     deep = list(range(1, mj.nbody))
-    levels = sorted(deep, key=lambda b: _depth(mj, b))
+    levels = sorted(deep, key=lambda b: depth(mj, b))
     for bodies in (deep, levels):
         order = [
             mj.joint(j).name for b in bodies for j in range(1, mj.njnt) if mj.jnt_bodyid[j] == b
         ]
         positions = _positions(path, mj, places[:, 0], root, angles, order)
-        there = _capture(mj, positions[chosen], np.arange(len(chosen), dtype=float))
-        at = np.stack([there.joints[_name(mj, b)].position for b in bodies], axis=1)
+        there = captured(mj, positions[chosen], np.arange(len(chosen), dtype=float))
+        at = np.stack([there.joints[body_name(mj, b)].position for b in bodies], axis=1)
         found.append((float(np.abs(at - places[chosen]).max()), positions))
     apart, positions = min(found, key=lambda pair: pair[0])
     if apart > FITS:
@@ -204,13 +154,6 @@ def _by_places(path: Path, mj: mujoco.MjModel, places: Array, root: Array, angle
             "of the model; is it the right --model?"
         )
     return positions
-
-
-def _depth(mj: mujoco.MjModel, body: int) -> int:
-    deep = 0
-    while body:
-        body, deep = int(mj.body_parentid[body]), deep + 1
-    return deep
 
 
 def _quaternions(path: Path, quaternions: Array) -> Array:

@@ -17,8 +17,9 @@ from rotctl.metrics.halts import going
 from rotctl.metrics.turning import longest_stall
 from rotctl.report import gl, stored_model
 from rotctl.report.character import FORCE_SCALE
-from rotctl.report.frame import PAPER, Moment, draw, moments, turns_done
+from rotctl.report.frame import PAPER, draw
 from rotctl.report.happenings import halts, happenings, stall
+from rotctl.report.moments import Moment, moments, turns_done
 from rotctl.report.rows import drawable, window
 from rotctl.report.sheet import FRAME, sheet
 from rotctl.report.skill import BEFORE, Part, first_push, parts

@@ -10,7 +10,8 @@ from rotctl import files
 from rotctl.maths.rotations import Array
 from rotctl.report import gl
 from rotctl.report.filmstrip import MAX_COLUMNS, OVERSAMPLING, write
-from rotctl.report.frame import INK, PAPER, SOFT, Moment, draw, typeface
+from rotctl.report.frame import INK, PAPER, SOFT, draw, typeface
+from rotctl.report.moments import Moment
 from rotctl.report.sheet import FRAME
 
 _MARGIN, _GAP, _CAPTION, _HEADER = 22, 10, 30, 84  # pixels

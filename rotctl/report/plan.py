@@ -9,7 +9,7 @@ from rotctl.log import RunLog
 from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import floats, nearest_places, turns
 from rotctl.report import axes as draw
-from rotctl.report.frame import turns_done
+from rotctl.report.moments import turns_done
 from rotctl.report.plot import heading, write
 
 SIZE = (6.4, 6.0)  # [inch]

@@ -15,12 +15,11 @@ from rotctl.report.frame import (
     PAPER,
     SOFT,
     USED,
-    Moment,
     arrow,
     dot,
-    is_pushed,
     typeface,
 )
+from rotctl.report.moments import Moment, is_pushed
 from rotctl.report.title import title
 
 FRAME = (320, 250)  # pixels

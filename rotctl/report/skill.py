@@ -14,7 +14,7 @@ from rotctl.metrics.columns import Arrays, floats
 from rotctl.metrics.criteria.chain import again, spans
 from rotctl.metrics.criteria.dive import entry
 from rotctl.metrics.criteria.flip import longest_flight
-from rotctl.report.frame import turns_done
+from rotctl.report.moments import turns_done
 
 FLIGHT = 0.2  # [s] from so long on it is one, not a hop
 BEFORE = 0.5  # [s] of the crouch before a take-off, of the rest before anything else

@@ -14,16 +14,8 @@ from rotctl.log import RunLog
 from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import heading
 from rotctl.report import encoder, gl, stored_model
-from rotctl.report.frame import (
-    INK,
-    MOODS,
-    PAPER,
-    SOFT,
-    Moment,
-    draw,
-    moments,
-    typeface,
-)
+from rotctl.report.frame import INK, MOODS, PAPER, SOFT, draw, typeface
+from rotctl.report.moments import Moment, moments
 from rotctl.report.rows import at_rate, drawable, window
 from rotctl.report.skill import parts
 from rotctl.report.stage_names import stages_of_parts

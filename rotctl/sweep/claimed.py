@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
-from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.criteria.kinds import COLUMNS
 from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.results import experiments
 from rotctl.results.keys import value_at

@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rotctl.behaviours.chain.settings import first_stage
     from rotctl.config.loading import load, own_file, rebuilt, recorded
     from rotctl.log import LOG_NAME
-    from rotctl.metrics.criteria.judge import settling
+    from rotctl.metrics.criteria.kinds import settling
     from rotctl.runs.run import built, run
 
     row = None

@@ -3,7 +3,6 @@
 import math
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,14 +13,12 @@ from rotctl.metrics.criteria.dive import DiveCriteria, entry
 from rotctl.metrics.criteria.finish import FinishCriteria
 from rotctl.metrics.criteria.flip import HOP, FlipCriteria, longest_flight, turn
 from rotctl.metrics.criteria.getting_up import GettingUpCriteria
+from rotctl.metrics.criteria.kinds import Criteria
 from rotctl.metrics.criteria.one_foot import OneFootCriteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
 from rotctl.metrics.criteria.rolling import RollingCriteria
 from rotctl.metrics.criteria.standing import StandingCriteria, on_others
 from rotctl.metrics.touching import touch_downs
-
-if TYPE_CHECKING:
-    from rotctl.metrics.criteria.judge import Criteria
 
 ENDS = "the run ends at"
 _WHEN = re.compile(r"(?<=\bt = )[\d.]+(?= s\b)|(?<=\bat )[\d.]+(?= s\b)")  # in a reason
@@ -31,7 +28,7 @@ TURNS = 0.1  # [rad/s] towards the target: it is still on its way
 
 def too_short(
     log: Arrays,
-    criteria: "Criteria",
+    criteria: Criteria,
     commanded: Mapping[str, float],
     columns: Mapping[str, float],
     period: float,
@@ -63,7 +60,7 @@ def of_a_part(reason: str, begin: float, end: float, goes_on: bool) -> str:
 
 def _missing(
     log: Arrays,
-    criteria: "Criteria",
+    criteria: Criteria,
     commanded: Mapping[str, float],
     columns: Mapping[str, float],
     lasted: float,

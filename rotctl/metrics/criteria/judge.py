@@ -1,21 +1,14 @@
-"""The verdict of a run by its criteria: one kind of criteria for each class of motion."""
+"""The verdict of a run by its criteria."""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import mujoco
 import numpy as np
-from pydantic import Field
-from pydantic.dataclasses import dataclass as validated
 
-from rotctl.metrics import (
-    appearance,
-    disturbed,
-    pace,
-    peaks,
-)
+from rotctl.metrics import appearance, pace
 from rotctl.metrics import halts as told_to
 from rotctl.metrics.columns import Arrays, floats, no_room, solver_failures
 from rotctl.metrics.criteria import (
@@ -37,58 +30,13 @@ from rotctl.metrics.criteria.dive import DiveCriteria
 from rotctl.metrics.criteria.finish import FinishCriteria
 from rotctl.metrics.criteria.flip import FlipCriteria
 from rotctl.metrics.criteria.getting_up import GettingUpCriteria
+from rotctl.metrics.criteria.kinds import ChainCriteria, Criteria
 from rotctl.metrics.criteria.one_foot import OneFootCriteria
-from rotctl.metrics.criteria.orientation import OrientationCriteria
 from rotctl.metrics.criteria.rolling import RollingCriteria
 from rotctl.metrics.criteria.rolling_rules import failure_reason
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.halts import Halts
 from rotctl.metrics.quantile import percentile
-from rotctl.settings.fields import MOST_PARTS, STRICT
-
-Single = Annotated[
-    AcrobaticCriteria
-    | DiveCriteria
-    | FinishCriteria
-    | FlipCriteria
-    | GettingUpCriteria
-    | OneFootCriteria
-    | OrientationCriteria
-    | RollingCriteria
-    | StandingCriteria,
-    Field(discriminator="kind"),
-]
-
-
-@validated(frozen=True, config=STRICT)
-class ChainCriteria:
-    """Each part of a chain by criteria of its own; see `conf/criteria/chain.yaml`."""
-
-    name: str
-    kind: Literal["chain"]
-    parts: Annotated[tuple[Single, ...], Field(max_length=MOST_PARTS)] = ()
-    description: str = ""
-
-
-Criteria = Annotated[Single | ChainCriteria, Field(discriminator="kind")]
-_KINDS = (
-    rolling,
-    appearance,
-    pace,
-    told_to,
-    standing,
-    orientation,
-    flip,
-    dive,
-    peaks,
-    finish,
-    acrobatic,
-    getting_up,
-    one_foot,
-    chain,
-    disturbed,
-)
-COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
 
 
 @dataclass(frozen=True)
@@ -178,12 +126,6 @@ def judge(
     torque = found["torque_p99_fraction"] if "torque_p99_fraction" in found else _torque(log)
     common = {"duration": steps * period, "torque_p99_fraction": torque}
     return Judgement(reason, {**common, **found, **asked, "solver_failures": failures})
-
-
-def settling(criteria: Criteria) -> float:
-    """What mean speeds of a roll leave out at its start [s]; 0 of what has none."""
-    roll = criteria.roll if isinstance(criteria, FinishCriteria) else criteria
-    return roll.settle if isinstance(roll, RollingCriteria) else 0.0
 
 
 def _chained(

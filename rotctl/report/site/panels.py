@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.criteria.kinds import COLUMNS
 from rotctl.report.axes import BLUE, GREEN, ORANGE
 from rotctl.report.rows import LARGEST
 from rotctl.report.site.grid import Grid, labels

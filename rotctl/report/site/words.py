@@ -6,7 +6,7 @@ from typing import Any
 
 from rotctl.metrics import appearance, pace
 from rotctl.metrics.claims import Claim, Judged
-from rotctl.metrics.criteria.judge import COLUMNS
+from rotctl.metrics.criteria.kinds import COLUMNS
 from rotctl.metrics.measured import SUCCESS_RATE, Measured
 from rotctl.report.title import plain
 
