@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from browser import Browser, executable
 
+from rotctl.choices.config_folders import OWN
+from rotctl.cli.main import main
 from rotctl.config import loading
 from rotctl.config.loading import load
 from rotctl.control import Command, Decision
@@ -194,6 +196,28 @@ def _what_is_shipped_is_composed_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loading, "composed", composed)
         yield
+
+
+@pytest.fixture
+def cli(capsys):
+    """Calls the command line in this process: (exit code, stdout, stderr)."""
+
+    def call(*arguments):
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as stop:  # argparse's way
+            code = stop.code
+        return (code, *capsys.readouterr())
+
+    return call
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """An empty folder that one is in, without configs of one's own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv(OWN, raising=False)
+    return tmp_path
 
 
 @pytest.fixture(scope="session")

@@ -25,20 +25,6 @@ RUN = ["run", "duration=0.5"]
 COMMANDS = ("run", "render", "replay", "plot", "list", "show", "inspect", "verify", "bench")
 
 
-@pytest.fixture
-def cli(capsys):
-    """Calls the command line in this process: (exit code, stdout, stderr)."""
-
-    def call(*arguments):
-        try:
-            code = main([str(argument) for argument in arguments])
-        except SystemExit as stop:  # argparse's way
-            code = stop.code
-        return (code, *capsys.readouterr())
-
-    return call
-
-
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
     """A short run: its folder of runs, its row, and its log."""

@@ -8,7 +8,6 @@ import pytest
 from here import swept, without_processes
 from test_summarise import change
 
-from rotctl.cli.main import main
 from rotctl.report.site import build
 from rotctl.results.table import table
 
@@ -30,14 +29,10 @@ def sweep(made, tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def cli(capsys, monkeypatch):
+def cli(cli, monkeypatch):
+    """Calls the command line, which carries its tasks out here."""
     without_processes(monkeypatch)
-
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        return (code, *capsys.readouterr())
-
-    return call
+    return cli
 
 
 @pytest.fixture

@@ -29,17 +29,6 @@ SHARED = Path(__file__).resolve().parents[1].parent / "shared" / "motions"
 LIMBS = ("hip", "knee", "shoulder", "elbow")
 
 
-@pytest.fixture
-def cli(capsys):
-    """Calls the command line in this process: (exit code, stdout, stderr)."""
-
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        return (code, *capsys.readouterr())
-
-    return call
-
-
 def imported(path, text, **settings):
     path.write_text(text)
     return import_motion(adult(), "adult", path, read_capture(path), **settings)

@@ -47,14 +47,6 @@ def recorded(tmp_path_factory):
     return RunLog.open(next(folder.glob("*/run.h5")))
 
 
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    """An empty folder with configs of one's own."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(config_folders.OWN, raising=False)
-    return tmp_path
-
-
 def started(*overrides, folder=None):
     """Behaviour, start and MuJoCo's data of a run that begins."""
     with config_folders.own(folder / "conf" if folder else None):

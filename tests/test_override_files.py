@@ -12,11 +12,7 @@ from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.settings.writing import to_dict
 
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def written(here, content, name="mine.yaml"):

@@ -22,22 +22,9 @@ from rotctl.tune.space import load_space
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    """An empty folder that the command line is called in."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.delenv(config_folders.OWN, raising=False)
-    return tmp_path
-
-
-@pytest.fixture
-def cli(here, capsys):
-    """Calls the command line in this process: (exit code, stdout, stderr)."""
-
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        return (code, *capsys.readouterr())
-
-    return call
+def cli(here, cli):
+    """Calls the command line in that folder."""
+    return cli
 
 
 def test_a_copy_is_a_choice_like_any_other(here, cli):

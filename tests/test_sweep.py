@@ -10,7 +10,6 @@ import pytest
 from here import Here, without_processes
 from sweep_cli import logs, published
 
-from rotctl.cli.main import main
 from rotctl.config.identity import run_id
 from rotctl.config.loading import load
 from rotctl.errors import InputError
@@ -35,18 +34,6 @@ FINISH = (
     *("+finish=stand", "behaviour.finish.after=0.3"),
     *("behaviour.finish.reach=1", "behaviour.finish.turning=1"),
 )
-
-
-@pytest.fixture
-def cli(capsys):
-    def call(*arguments):
-        try:
-            code = main([str(argument) for argument in arguments])
-        except SystemExit as stop:
-            code = stop.code
-        return (code, *capsys.readouterr())
-
-    return call
 
 
 def runs_of(*grid):
