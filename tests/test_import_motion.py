@@ -17,7 +17,9 @@ from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.motion import load_clip
 from rotctl.motion.flight import ADULT_LEG, Flight, flights
+from rotctl.motion.glance import require_motion
 from rotctl.motion.importing import import_motion
+from rotctl.motion.landmarks import find_landmarks
 from rotctl.motion.preview import motion_of
 from rotctl.motion.reading import read_capture
 from rotctl.motion.turning import rotation_between_postures
@@ -98,6 +100,30 @@ def test_a_rock_on_the_back_is_no_roll(tmp_path, cli):
         r"give --cycle START:END \[s\] for less than one\n",
         error,
     )
+
+
+def test_noise_is_no_motion_and_is_not_fitted(tmp_path, cli, monkeypatch):
+    """Postures one after the other that have nothing to do with each other."""
+    monkeypatch.setattr("rotctl.motion.importing.retarget", None)
+    generator, n = np.random.default_rng(3), 40
+    positions = generator.normal(size=(n, adult().mj.nq))
+    positions[:, 3:7] /= np.linalg.norm(positions[:, 3:7], axis=1, keepdims=True)
+    positions[:, 7:] = generator.uniform(*adult().joint_range.T, (n, adult().mj.nu))
+    path = tmp_path / "noise.bvh"
+    path.write_text(bvh_text(positions))
+    code, _, stderr = cli("import-motion", path, "--out", tmp_path / "a.yaml")
+    assert code == 2
+    assert re.fullmatch(
+        rf"rotctl: {path}: from a frame to the next the points of the body turn by (8|9)\d deg "
+        "about its middle, as the median: that is no motion\n",
+        stderr,
+    )
+
+
+def test_six_frames_a_revolution_are_a_motion(tmp_path):
+    path = tmp_path / "roll.bvh"
+    path.write_text(bvh_text(in_order("forward_roll", turns=2.0, frames=13), rate=6.0))
+    require_motion(path, find_landmarks(path, read_capture(path)))
 
 
 def test_the_other_way_round_is_a_mirror_image(tmp_path):

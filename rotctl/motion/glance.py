@@ -21,6 +21,7 @@ ACROSS = 0.4  # [legs] and across it is no more
 STEADIER = 3.0  # the lowest point moves so much less along the axis that is up
 JUMP = 0.15  # [legs] a first frame farther from the second was put there
 JUMPS = 5.0  # and so many times the steps that follow
+FASTEST = 75.0  # [deg] from a frame to the next: with fewer than five a revolution none shows
 _CLOUD = ("hip", "knee", "ankle", "elbow", "wrist")  # points of a side, beside those of the trunk
 _TRUNK = ("hips", "chest", "neck", "head")
 TURN = 0.6  # [rev] less of it is no roll, whatever the masses are
@@ -60,6 +61,24 @@ def has_false_start(marks: Landmarks) -> bool:
         return False
     apart = np.linalg.norm(np.diff(cloud[:7], axis=0), axis=2).max(axis=1) / marks.leg
     return bool(apart[0] > max(JUMP, JUMPS * apart[1:].max()))
+
+
+def require_motion(path: Path, marks: Landmarks) -> None:
+    """See that frames follow each other: of noise a fit takes minutes, and finds rolls in it.
+
+    Raises:
+        InputError: they do not.
+    """
+    cloud = _cloud(marks)
+    arms = cloud - cloud.mean(axis=1, keepdims=True)
+    arms /= np.maximum(np.linalg.norm(arms, axis=2, keepdims=True), 1e-9)
+    cosines = (arms[1:] * arms[:-1]).sum(axis=2)
+    turned = float(np.median(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))))
+    if turned > FASTEST:
+        raise InputError(
+            f"{path}: from a frame to the next the points of the body turn by {turned:.0f} deg "
+            "about its middle, as the median: that is no motion"
+        )
 
 
 def turning(marks: Landmarks) -> Array:

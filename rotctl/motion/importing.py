@@ -19,7 +19,7 @@ from rotctl.motion.cutting import cut, part_of, within
 from rotctl.motion.cycle import SAMPLES, by_excursion
 from rotctl.motion.finding import find_roll, roll_kind, rolling_axis
 from rotctl.motion.flight import Flight, flights
-from rotctl.motion.glance import has_false_start, stood_up, up_axis
+from rotctl.motion.glance import has_false_start, require_motion, stood_up, up_axis
 from rotctl.motion.ground import centres
 from rotctl.motion.landmarks import Landmarks, find_landmarks
 from rotctl.motion.mirror import mirrored, symmetric
@@ -109,6 +109,7 @@ def import_motion(
     time, false_start = capture.time, has_false_start(marks)
     if false_start:
         time, marks = time[1:], part_of(marks, slice(1, None))
+    require_motion(path, marks)
     found, flown = _best(model, cut(path, time, marks, cycle), cycle, progress)
     time, fitted = found.time, found.fitted
     motion, root, turns = fitted.motion, fitted.root, found.turns
