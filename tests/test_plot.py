@@ -43,6 +43,14 @@ def words(path):
     return re.findall(r"<text[^>]*>([^<]*)</text>", path.read_text(encoding="utf-8"))
 
 
+def finite_points(path):
+    """How many points the lines of a plot have; all of them must be numbers."""
+    lines = re.findall(r"<path[^>]* d=\"([^\"]*)\"", path.read_text(encoding="utf-8"))
+    numbers = [word for line in lines for word in line.split() if word not in set("MLCQz")]
+    assert np.isfinite(np.array(numbers, dtype=float)).all()
+    return len(numbers) // 2
+
+
 # ---------------------------------------------------------------- signals
 
 
@@ -193,9 +201,12 @@ def test_a_run_that_broke_down_is_plotted_until_there(log, tmp_path):
     arrays = {"trajectory/qpos": states, "trajectory/angular_velocity": rates}
     arrays["trajectory/linear_momentum_rate_desired"] = np.full_like(rates, np.nan)
     broken = changed(log, tmp_path, arrays)
+    plot(log, tmp_path / "whole.svg")
     plot(broken, tmp_path / "plot.svg")
+    assert finite_points(tmp_path / "plot.svg") < finite_points(tmp_path / "whole.svg")
     states[1:] = np.nan
     plot(changed(log, tmp_path, {"trajectory/qpos": states}), tmp_path / "plot.svg")
+    assert finite_points(tmp_path / "plot.svg") > 0
 
 
 @pytest.mark.parametrize("value", [1e308, 1e6, np.nan, -1e308])

@@ -182,7 +182,8 @@ def test_the_whole_of_a_machine_is_told(made, site):
 
 
 def test_replays_share_one_script(site):
-    for path in site.glob("replays/*.html"):
+    assert (pages := sorted(site.glob("replays/*.html")))
+    for path in pages:
         html = path.read_text(encoding="utf-8")
         assert '<script src="../replay.js"></script>' in html
         assert "script-src 'self' file:;" in html

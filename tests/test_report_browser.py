@@ -47,7 +47,8 @@ def test_the_first_key_press_skips_to_the_results(browser, site):
 
 
 def test_a_replay_finds_the_script_beside_it_and_the_way_back(browser, site):
-    for path in sorted(site.glob("replays/*.html")):
+    assert (pages := sorted(site.glob("replays/*.html")))
+    for path in pages:
         browser.open(path)
         browser.click("#play")
         browser.wait("replay.clock.time > 0.2")
