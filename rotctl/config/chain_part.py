@@ -21,7 +21,15 @@ Composing = Callable[[list[str]], dict[str, Any]]
 
 
 def made(where: str, said: Any, compose: Composing) -> dict[str, Any]:
-    """The config of a part by itself."""
+    """The config of a part by itself.
+
+    Args:
+        where: it stands, for messages; said: what one would write.
+        compose: makes the data of a config from overrides.
+
+    Raises:
+        InputError: it makes none, or a chain; one line that names it.
+    """
     if not isinstance(said, str):
         raise InputError(f"{where}={brief(said)}: must be a text, such as back_flip")
     try:
@@ -59,15 +67,19 @@ def _instead(made: dict[str, Any], compose: Composing) -> str:
     if judged == KIND:
         return "is a chain; name its parts" + f", {', '.join(names)}" * bool(names)
     alike = []
-    for name in filter(choices("behaviour").__contains__, names):
-        one = compose([f"behaviour={name}"]).get("criteria")
-        alike += [name] if isinstance(one, dict) and one.get("kind") == judged else []
+    for choice in filter(choices("behaviour").__contains__, names):
+        one = compose([f"behaviour={choice}"]).get("criteria")
+        alike += [choice] if isinstance(one, dict) and one.get("kind") == judged else []
     less = f"; {' or '.join(alike)} of them can be one" if alike else ""
     return f"is a chain that is judged as a whole, and no part of another{less}: see docs/chains.md"
 
 
 def require_here(where: str, part: dict[str, Any], data: dict[str, Any]) -> None:
-    """See that the run has the world and the body that a part's behaviour asks for."""
+    """See that the run, of this data, has the world and the body that a part asks for.
+
+    Raises:
+        InputError: it has others.
+    """
     for group in WORLD:
         asked = name(part, group)
         if asked not in (usual()[group], name(data, group)):
@@ -78,7 +90,11 @@ def require_here(where: str, part: dict[str, Any], data: dict[str, Any]) -> None
 
 
 def require_facing(where: str, part: dict[str, Any], compose: Composing) -> None:
-    """See that no later part is told where to head."""
+    """See that a later part is not told where to head.
+
+    Raises:
+        InputError: it is.
+    """
     choice = f"behaviour={shlex.split(part[SAID])[0]}"
     heading, usual = (one["behaviour"].get("heading") for one in (part, compose([choice])))
     if heading not in (None, usual):
