@@ -6,6 +6,7 @@ import json
 import shutil
 
 import h5py
+import mujoco
 import pytest
 from here import Here, swept, without_processes
 from sweep_cli import logs
@@ -133,6 +134,28 @@ def test_a_run_with_other_criteria_is_judged_and_not_simulated(tmp_path):
     assert (first.summary["success"], second.summary["success"]) == (True, False)
     assert second.already_there
     assert first.trajectory == second.trajectory == simulated(second.folder / "run.h5")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        ["plant=randomised", "disturbance=push"],
+        ["disturbance=load", "disturbance.time=0.5", "disturbance.mass=20"],
+    ],
+)
+def test_judged_again_it_has_the_same_measures(body, tmp_path):
+    """Forces in body weights are of who was simulated, and a load is no part of that body."""
+    given = ["duration=2", "seed=2001", *body]
+    first = run(load(given), tmp_path)
+    second = run(load([*given, STRICT]), tmp_path)
+    verdict = ("success", "failure_reason")
+    assert all(first.summary[key] != second.summary[key] for key in verdict)
+    assert {k: v for k, v in first.summary.items() if k not in verdict} == {
+        k: v for k, v in second.summary.items() if k not in verdict
+    }
+    log = RunLog.open(first.folder / "run.h5")
+    weight = mujoco.MjModel.from_xml_string(log.model_xml).body_subtreemass[1] * 9.81
+    assert first.summary["force_peak"] * weight == pytest.approx(first.summary["ground_force_peak"])
 
 
 def test_points_that_differ_in_criteria_alone_are_refused():

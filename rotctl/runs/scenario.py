@@ -106,12 +106,11 @@ def build(config: Config, making: Making = ANEW, *, again: bool = False) -> Scen
     """
     by = gains_likeness(config.character)
     control = similar(config.controller, by, config.behaviour.kinds)
-    known, plant = model_of(config), np.random.default_rng([config.seed, PLANT_STREAM])
+    known, plant = model_of(config), _of_plant(config)
     require_fit(config, known)
     if not again:
         require_sense(config)
-    apart = config.plant.differs or config.disturbance.changes_model
-    model = _varied(config, Variation(config.plant, plant)) if apart else known
+    model = _simulated(config, plant)
     asked = asking(config.behaviour, by)
     behaviour = making.behaviour(asked, known, control, config.excursion)
     generator = np.random.default_rng([config.seed, DISTURBANCE_STREAM])
@@ -164,6 +163,25 @@ def model_of(config: Config) -> Model:
         InputError: the numbers do not make a model.
     """
     return model_from(*model_parts(config))
+
+
+def simulated_model_of(config: Config) -> Model:
+    """The model that is simulated: what control knows, or what its plant differs by.
+
+    Raises:
+        InputError: as for `model_of`.
+    """
+    return _simulated(config, _of_plant(config))
+
+
+def _of_plant(config: Config) -> np.random.Generator:
+    """What draws how a plant differs, and afterwards its noise."""
+    return np.random.default_rng([config.seed, PLANT_STREAM])
+
+
+def _simulated(config: Config, generator: np.random.Generator) -> Model:
+    apart = config.plant.differs or config.disturbance.changes_model
+    return _varied(config, Variation(config.plant, generator)) if apart else model_of(config)
 
 
 def model_parts(config: Config) -> tuple[Any, ...]:

@@ -15,7 +15,7 @@ from rotctl.metrics.columns import Arrays
 from rotctl.metrics.criteria.chain import Link
 from rotctl.metrics.criteria.judge import judge
 from rotctl.metrics.halts import COLUMNS as OF_HALTS
-from rotctl.runs.scenario import Scenario, model_of
+from rotctl.runs.scenario import Scenario, model_of, simulated_model_of
 
 Summary = dict[str, Any]
 BROKE_DOWN, LEFT = "physics", "left the ground"  # how reasons begin that no criteria give
@@ -32,7 +32,10 @@ def summarise(
         wall: the time the loop took [s].
     """
     log = run.arrays() if isinstance(run, TrajectoryBuffer) else run
-    return _judged(scenario.config, scenario.run_id, scenario.model, log, ending, wall)
+    config, model = scenario.config, scenario.model
+    if config.disturbance.changes_model:  # a load is no part of the body whose weights are told
+        model = simulated_model_of(config)
+    return _judged(config, scenario.run_id, model, log, ending, wall)
 
 
 def judged_again(log: RunLog, config: Config) -> Summary:
@@ -42,12 +45,11 @@ def judged_again(log: RunLog, config: Config) -> Summary:
         LogError: the log is damaged.
         InputError: such criteria do not judge such a run.
     """
-    model = model_of(config)
-    require_fit(config, model)
+    require_fit(config, model_of(config))
     reason = str(log.outcome["failure_reason"])
     ending = reason if reason.startswith((BROKE_DOWN, LEFT)) else ""
     wall = float(log.attributes["wall_time"])
-    arrays = log.arrays()
+    arrays, model = log.arrays(), simulated_model_of(config)  # of whom body weights are told
     return _judged(config, str(log.attributes["run_id"]), model, arrays, ending, wall)
 
 
