@@ -321,7 +321,7 @@ def test_what_is_refused_of_a_new_run_is_repeated_and_judged_of_an_older_one(
     with pytest.raises(InputError, match="it is never told to end"):
         logged(tmp_path, *asked)
     with monkeypatch.context() as patched:
-        patched.setattr("rotctl.runs.scenario.require_sense", lambda config: None)
+        patched.setattr("rotctl.runs.scenario.require_sense", lambda config, known: None)
         older = logged(tmp_path, *asked)
     assert repeat(older).same
     assert judged_again(older, recorded(older))["behaviour"] == "forward_roll"

@@ -10,25 +10,33 @@ from rotctl.mechanics.changes import Slip
 from rotctl.mechanics.character import Character
 from rotctl.mechanics.excursion import ExcursionSettings
 from rotctl.mechanics.flesh import Flesh
+from rotctl.mechanics.model import Model
 from rotctl.mechanics.physics import LockstepPhysics, MujocoPhysics
 from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
 from rotctl.mechanics.terrain.ground import LEAST_FRICTION, MOST_FRICTION
+from rotctl.motion import make_pose
 from rotctl.settings.checking import checked
 from rotctl.settings.complaints import brief
 from rotctl.settings.fields import ends
+from rotctl.settings.plain import find, way
 from rotctl.settings.writing import to_dict
+from rotctl.simulation.start import StartSettings
 
 ROUNDED = 0.999  # [-] of two steps: a time of three digits is no less than they are
 
 
-def require_sense(config: Config) -> None:
+def require_sense(config: Config, known: Model) -> None:
     """See that a run that is newly asked for comes to what it is told.
 
     Older runs, made before this was refused, are repeated and judged as they are.
 
+    Args:
+        known: the model of the config.
+
     Raises:
-        InputError: a finish comes too late, the ground may be drawn as none can be, or what is
-            said of a contact, a pull or a halt acts on nothing.
+        InputError: a finish comes too late, the ground may be drawn as none can be, a joint is to
+            begin where it cannot be, or what is said of a contact, a pull or a halt acts on
+            nothing.
     """
     _require_ground(config)
     if not isinstance(config.physics, LockstepPhysics):
@@ -36,6 +44,7 @@ def require_sense(config: Config) -> None:
         _require_slow(config.character, config.physics, config.controller.rate)
     else:
         _require_hard(config.character, config.physics)
+    _require_bent(config.start, known)
     _require_pulled(config.behaviour, config.excursion)
     _require_halts(config.behaviour)
     _require_end(config.behaviour, config.duration)
@@ -109,6 +118,18 @@ def _require_hard(character: Character, physics: LockstepPhysics) -> None:
                 f"character.flesh.{key}={brief(value)}: acts on nothing, as contacts of "
                 f"physics={physics.name} are hard; leave flesh as character={character.name} has it"
             )
+
+
+def _require_bent(start: StartSettings, known: Model) -> None:
+    """Joints begin within their ranges; what a start brings along other bodies take as they can."""
+    whole = brought("start", start.name)
+    poses = {f"postures.{about}.pose": posture.pose for about, posture in start.postures.items()}
+    if start.aloft:
+        poses["aloft.pose"] = start.aloft.pose
+    for key, pose in poses.items():
+        usual = find(whole, way(key))
+        told = {name: angle for name, angle in pose.items() if find(usual, [name]) != angle}
+        make_pose(known, told, f"start.{key}")
 
 
 def _require_pulled(behaviour: BehaviourSettings, measured: ExcursionSettings) -> None:

@@ -109,7 +109,7 @@ def build(config: Config, making: Making = ANEW, *, again: bool = False) -> Scen
     known, plant = model_of(config), _of_plant(config)
     require_fit(config, known)
     if not again:
-        require_sense(config)
+        require_sense(config, known)
     model = _simulated(config, plant)
     asked = asking(config.behaviour, by)
     behaviour = making.behaviour(asked, known, control, config.excursion)

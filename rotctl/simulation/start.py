@@ -6,7 +6,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.maths.rotations import Array
-from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Range
+from rotctl.settings.fields import SPARSE, STRICT, Finite, HalfTurn, Range
 from rotctl.simulation.aloft import AloftSettings
 from rotctl.simulation.falling import FallingSettings
 from rotctl.simulation.known import Known, StateSettings
@@ -50,8 +50,8 @@ class StartSettings:
     angular_velocity_y: Range
     angular_velocity_z: Range
     postures: dict[str, Posture] = field(default_factory=dict)
-    scatter: NonNegative = 0.0
-    tilt: NonNegative = 0.0
+    scatter: HalfTurn = 0.0
+    tilt: HalfTurn = 0.0
     falling: FallingSettings | None = None
     aloft: AloftSettings | None = None
     state: StateSettings | None = field(default=None, metadata=SPARSE)

@@ -24,7 +24,7 @@ from rotctl.mechanics.terrain.ground import (
     add_geom,
 )
 from rotctl.mechanics.terrain.plane import Plane
-from rotctl.settings.fields import STRICT, NonNegative, Positive, Range
+from rotctl.settings.fields import STRICT, HalfTurn, NonNegative, Positive, Range
 
 FLOOR_PART = 0.05  # [m] of a bar that is below the ground
 MOST_THINGS = 18_000  # an hour of one every 60 cm
@@ -56,15 +56,24 @@ class Hazards:
     bars: Annotated[int, Strict(), Field(ge=0, le=200)]
     bar_height: Range
     bar_depth: Range
-    bar_turn: NonNegative
+    bar_turn: HalfTurn
     boxes: Annotated[int, Strict(), Field(ge=0, le=200)]
     box_edge: Range
     box_density: Positive
     box_aside: NonNegative
-    box_turn: NonNegative
+    box_turn: HalfTurn
     spacing: Annotated[Positive, Field(ge=0.1)]
     run_in: NonNegative
     description: str = ""
+
+    def __post_init__(self) -> None:
+        if self.bar_height[0] < 0.0:
+            low, high = self.bar_height
+            raise ValueError(f"bar_height=[{low:g}, {high:g}]: must not be negative")
+        for name in ("bar_depth", "box_edge"):
+            low, high = getattr(self, name)
+            if low <= 0.0:
+                raise ValueError(f"{name}=[{low:g}, {high:g}]: must be more than 0")
 
     def make(self, generator: np.random.Generator, reach: float) -> "HazardousGround":
         """The ground of one run that comes `reach` [m] ahead, drawn from `generator`.
