@@ -13,6 +13,7 @@ from rotctl.mechanics.bodies import is_character
 from rotctl.mechanics.contacts import contact_jacobian, realised_forces
 from rotctl.mechanics.state import read
 from rotctl.report import shapes, stored_model
+from rotctl.report.spacing import change
 from rotctl.runs.run import LOG_NAME, run
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
@@ -37,6 +38,18 @@ def among_boxes(scenario, seed=0):
 @pytest.fixture(scope="module")
 def scenario():
     return made("seed=1")
+
+
+def test_what_is_said_of_joints_is_not_of_boxes(tmp_path):
+    log = RunLog.open(run(load(["behaviour=hazards", "duration=4"]), tmp_path).folder / LOG_NAME)
+    joints, rates = len(log["model/joint"]), log["trajectory/qvel"]
+    assert rates.shape[1] > 6 + joints, "there are boxes"
+    second = np.diff(rates[:, 6 : 6 + joints], 2, axis=0) * 60.0**2
+    assert log.outcome["jerk"] == pytest.approx(np.sqrt((second**2).mean()))
+    thrown = dict(log)
+    thrown["trajectory/qvel"] = rates.copy()
+    thrown["trajectory/qvel"][:, 6 + joints :] += 100.0
+    assert (change(thrown) == change(log)).all(), "frames of a filmstrip lie where it moves"
 
 
 @pytest.fixture(scope="module")

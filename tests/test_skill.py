@@ -49,6 +49,7 @@ def log_of(seconds, stages=(), flies=(), moves=(), pushed=(), waves=(), turns=0.
         "trajectory/com_velocity": velocity,
         "trajectory/angular_velocity": none,
         "trajectory/qvel": joints,
+        "trajectory/ctrl": np.zeros((len(time), 2)),
         "trajectory/angular_excursion": turned,
         "trajectory/trunk_axis": np.tile([0.0, 1.0, 0.0], (len(time), 1)),
         "disturbance/wrench": wrench,

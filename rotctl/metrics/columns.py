@@ -38,6 +38,12 @@ def floats(log: Arrays, name: str) -> NDArray[np.float64]:
     return np.asarray(log[name], dtype=float)
 
 
+def joint_rates(log: Arrays) -> NDArray[np.float64]:
+    """Of the character's joints (steps, nu) [rad/s]; behind them are velocities of loose boxes."""
+    joints = np.asarray(log["trajectory/ctrl"]).shape[1]
+    return floats(log, "trajectory/qvel")[:, 6 : 6 + joints]
+
+
 def slots_taken(log: Arrays) -> int:
     """How many slots of contacts have ever been taken; all beyond are empty."""
     taken = np.flatnonzero((np.asarray(log["contacts/body"]) >= 0).any(axis=0))

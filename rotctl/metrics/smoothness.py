@@ -6,7 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, joint_rates
 from rotctl.metrics.loads import taken
 
 LIGHT = 7.0  # [N] a hundredth of an adult: the ground hardly carries what it gives less than that
@@ -38,7 +38,7 @@ class Limits(Protocol):
 
 def jerk(log: Arrays, period: float) -> float:
     """Of the joints, from the second difference of their velocities; NaN for too few rows."""
-    jerk = np.diff(floats(log, "trajectory/qvel")[:, 6:], 2, axis=0) / period**2
+    jerk = np.diff(joint_rates(log), 2, axis=0) / period**2
     return float(np.sqrt((jerk**2).mean())) if len(jerk) else math.nan
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from rotctl.maths.rotations import Array
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, joint_rates
 from rotctl.metrics.criteria.chain import again, spans
 from rotctl.metrics.criteria.dive import entry
 from rotctl.metrics.criteria.flip import longest_flight
@@ -142,7 +142,7 @@ def _still(log: Arrays, after: int, period: float, rows: int, poses: bool = Fals
     turning = np.sqrt((floats(log, "trajectory/angular_velocity")[:rows] ** 2).sum(axis=1))
     moving = (_speed(log)[:rows] > SLOW) | (turning > SLOW_TURN)
     if poses and "trajectory/qvel" in log:
-        joints = floats(log, "trajectory/qvel")[:rows, 6:]
+        joints = joint_rates(log)[:rows]
         moving |= np.sqrt((joints**2).sum(axis=1)) > SLOW_JOINTS
     moving[:after] = True
     late = np.flatnonzero(moving)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from rotctl.maths.rotations import Array
-from rotctl.metrics.columns import Arrays, floats
+from rotctl.metrics.columns import Arrays, floats, joint_rates
 from rotctl.report.skill import Part
 
 CLOSEST = 1 / 30  # of a part's rows are between two frames at least
@@ -53,7 +53,7 @@ def spread(
 def change(log: Arrays) -> Array:
     """How fast the body turns, and its joints on the average (n,) [rad/s]; 0 where none is told."""
     turning = np.sqrt((floats(log, "trajectory/angular_velocity") ** 2).sum(axis=1))
-    joints = floats(log, "trajectory/qvel")[:, 6:] if "trajectory/qvel" in log else np.zeros((1, 0))
+    joints = joint_rates(log) if "trajectory/qvel" in log else np.zeros((1, 0))
     if joints.shape[1]:
         turning = turning + np.sqrt((joints**2).mean(axis=1))
     found: Array = np.nan_to_num(turning, nan=0.0, posinf=0.0).clip(0.0, FASTEST)
