@@ -110,6 +110,15 @@ def test_each_limit_has_its_reason(back):
     assert "of 540" in dive.judge(log, strict, 540.0, PERIOD)[1]
 
 
+def test_a_joint_of_the_straight_pose_may_be_one_of_a_side(back):
+    scenario, log = back
+    knee = 7 + log["model/joint"].tolist().index(b"knee_l")
+    one = replace(scenario.config.criteria, straight={"knee_l": 1.0})
+    told = dive.judge(log, one, -540.0, PERIOD)[0]["bent_most"]
+    bend = log["trajectory/qpos"][dive.entry(log), knee]
+    assert told == pytest.approx(np.degrees(1.0 - bend))
+
+
 def test_water_is_lower_than_the_platform_and_stops_nobody():
     ground = build(load(["behaviour=dive_backward", "terrain.height=3"])).model.ground
     assert ground.height(0.0, 0.0) == 0.0

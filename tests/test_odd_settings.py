@@ -170,6 +170,20 @@ def complaint(chosen, changes):
          "begins at 2 s at the earliest, when the run of 1 s is over"),
         ([*PUSHED, "terrain=obstacles"], {"disturbance.body": "box_0"},
          f"disturbance.body names the unknown body 'box_0'; bodies: {BODIES}"),
+        (STAND, {"criteria.feet": []}, "criteria.feet=[]: too few values, at least 1"),
+        (["behaviour=handstand"], {"criteria.held.bodies": ["forearm_l", "forarm_r"]},
+         "criteria.held.bodies names the unknown body 'forarm_r'; did you mean forearm_r? "
+         f"bodies: {BODIES}"),
+        (["behaviour=handstand"], {"criteria.order": [["forearm_l", "forearm_l"]]},
+         "criteria.order.0: names forearm_l twice"),
+        (["behaviour=dive_forward"], {"criteria.straight": {}},
+         "criteria.straight={}: too few values, at least 1"),
+        (["behaviour=dive_forward"], {"criteria.straight": {"tail": 0.0}},
+         "criteria.straight names the unknown joint 'tail'; valid: ankle_x, ankle_y, chest_x, "
+         "chest_y, chest_z, elbow, hip_x, hip_y, hip_z, knee, neck_x, neck_y, neck_z, shoulder_x, "
+         "shoulder_y, shoulder_z, waist_x, waist_y, waist_z, limb joints also with _l or _r"),
+        (["behaviour=dive_forward"], {"criteria.straight.shoulder_y": 180.0},
+         "criteria.straight.shoulder_y=180: this joint goes from -1 to 3.1 rad"),
         (STAND, {"start.postures.left.pose.knee": 90.0},
          "start.postures.left.pose.knee=90: this joint goes from -0.02 to 2.7 rad"),
         (["behaviour=flight"], {"start.aloft.pose.elbow": -1.0},

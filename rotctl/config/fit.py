@@ -18,6 +18,7 @@ from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.kinds import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
+from rotctl.motion import make_pose
 from rotctl.settings.fields import Vector, ends
 
 ROUNDING = 1e-9  # [s]
@@ -92,10 +93,13 @@ def _require_judged(
             _require_judged(part.behaviour, own, model, place)
     if isinstance(criteria, DiveCriteria):
         _require_watched(behaviour, criteria, key)
+        make_pose(model, criteria.straight, f"{key}.straight")
     of = next((f".{part}" for part in ("landing", "stand") if hasattr(criteria, part)), "")
     stands = getattr(criteria, of[1:]) if of else criteria
     for name in getattr(stands, "feet", ()):
         body_id(model.mj, name, f"{key}{of}.feet")
+    for name in getattr(getattr(criteria, "held", None), "bodies", ()):
+        body_id(model.mj, name, f"{key}.held.bodies")
     for group in getattr(criteria, "order", ()):
         for name in group:
             body_id(model.mj, name, f"{key}.order")

@@ -55,6 +55,7 @@ def each_once(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 Names = Annotated[tuple[str, ...], AfterValidator(each_once)]
+SomeNames = Annotated[Names, Field(min_length=1)]
 
 
 Schedule = tuple[tuple[float, float], ...]  # times, and what holds from each on

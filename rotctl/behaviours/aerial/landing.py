@@ -11,11 +11,10 @@ and the body is turned about left until the centre of mass is there, on flat fee
 """
 
 from math import atan2
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
-from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours.support import ends, middle
@@ -24,7 +23,7 @@ from rotctl.mechanics.bodies import ROOT_BODY, body_ids, lowest_and_highest
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
 from rotctl.motion import Turn, make_pose
-from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
 
 ATTITUDES = np.arange(-80, 141) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
 
@@ -45,7 +44,7 @@ class LandingSettings:
     """
 
     pose: dict[str, Turn]
-    bodies: Annotated[Names, Field(min_length=1)]
+    bodies: SomeNames
     ankle: str
     time: NonNegative
     share: NonNegative

@@ -13,7 +13,7 @@ from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import flip, standing
 from rotctl.metrics.criteria.standing import StandingCriteria
 from rotctl.metrics.touching import TouchDown, touch_downs
-from rotctl.settings.fields import STRICT, Positive
+from rotctl.settings.fields import STRICT, Positive, SomeNames
 
 COLUMNS = (
     Column("touched", "What came down, and when [s]", ""),
@@ -21,7 +21,7 @@ COLUMNS = (
     Column("held", "Longest time held upside down", "s"),
 )
 
-Group = Annotated[tuple[str, ...], Field(min_length=1, max_length=20)]
+Group = Annotated[SomeNames, Field(max_length=20)]
 
 
 @validated(frozen=True, config=STRICT)

@@ -7,9 +7,10 @@ are tasks of kind point with the aim `watch`, whose error is the way from there 
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics import peaks
@@ -38,7 +39,8 @@ class DiveCriteria:
 
     Attributes:
         angle: of the line from the feet to the hands, off the vertical at entry [deg].
-        straight: pose at entry by joint name [rad]; joints not named are not looked at.
+        straight: pose at entry by joint name, with a side or for both [rad]; joints not named are
+            not looked at.
         bent: off that pose at most [deg].
         clearance: from where it last stood, on the way down [m].
         held: upside down on the platform before it, if asked for: a dive from the hands, which are
@@ -48,7 +50,7 @@ class DiveCriteria:
     name: str
     kind: Literal["dive"]
     angle: Positive
-    straight: dict[str, Finite]
+    straight: Annotated[dict[str, Finite], Field(min_length=1)]
     bent: Positive
     clearance: Positive
     held: HeldCriteria | None = None
@@ -139,7 +141,8 @@ def _bent(log: Arrays, criteria: DiveCriteria) -> list[float]:
     """Of the joint that is furthest off the straight pose (steps,) [deg]."""
     names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/joint"]).tolist()]
     angles = floats(log, "trajectory/qpos")[:, 7 : 7 + len(names)]
-    wanted = [criteria.straight.get(_whole(name), math.nan) for name in names]
+    straight = criteria.straight
+    wanted = [straight.get(name, straight.get(_whole(name), math.nan)) for name in names]
     off = np.degrees(np.abs(angles - np.array(wanted)))
     return [float(value) for value in np.nanmax(off, axis=1)]
 

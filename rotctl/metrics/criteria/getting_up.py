@@ -10,7 +10,7 @@ from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats
 from rotctl.metrics.criteria import standing
-from rotctl.settings.fields import STRICT, Names, Positive
+from rotctl.settings.fields import STRICT, Positive, SomeNames
 
 COLUMNS = (
     Column("up_from", "On its feet alone, upright and high enough from", "s"),
@@ -35,7 +35,7 @@ class GettingUpCriteria:
 
     name: str
     kind: Literal["getting_up"]
-    feet: Names
+    feet: SomeNames
     within: Positive
     rest: Positive
     height: Positive

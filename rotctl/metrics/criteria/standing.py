@@ -9,7 +9,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.columns import Arrays, Column, floats, in_frame
-from rotctl.settings.fields import STRICT, Names, Positive
+from rotctl.settings.fields import STRICT, Positive, SomeNames
 
 COLUMNS = (
     Column("lean_most", "Largest lean of the trunk", "deg"),
@@ -37,7 +37,7 @@ class StandingCriteria:
 
     name: str
     kind: Literal["standing", "landing"]
-    feet: Names
+    feet: SomeNames
     rest: Positive
     height: Positive
     lean: Positive
