@@ -5,7 +5,7 @@
 
 from rotctl.mechanics.bodies import body_id, body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import Names
+from rotctl.settings.fields import SomeNames
 
 
 class NamesNothing:
@@ -18,7 +18,7 @@ class NamesNothing:
 class NamesBodies:
     """Names bodies; one without a side stands for both sides."""
 
-    bodies: Names
+    bodies: SomeNames
 
     def check(self, model: Model, key: str) -> None:
         """See that they are there.

@@ -19,11 +19,12 @@ from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.model import Model
 from rotctl.motion.clip import Clip
+from rotctl.motion.pose_pair import Turn
 from rotctl.settings.fields import STRICT, Finite, NonNegative
 
 STEPS = 720  # of the table that `at` reads: half a degree of phase
 
-Harmonics = Annotated[list[Finite], Field(min_length=1, max_length=17)]  # a mean and up to eight
+Harmonics = Annotated[list[Turn], Field(min_length=1, max_length=17)]  # a mean and up to eight
 
 
 @validated(frozen=True, config=STRICT)

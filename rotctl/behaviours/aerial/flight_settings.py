@@ -8,7 +8,15 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.behaviours.aerial.landing import LandingSettings
 from rotctl.behaviours.aerial.levelling import LevellingSettings
 from rotctl.motion import Turn
-from rotctl.settings.fields import SPARSE, STRICT, Finite, Fraction, Names, NonNegative, Positive
+from rotctl.settings.fields import (
+    SPARSE,
+    STRICT,
+    Finite,
+    Fraction,
+    NonNegative,
+    Positive,
+    SomeNames,
+)
 from rotctl.suggestion import instead
 
 TUCK = "tuck"  # the shape that every flight has
@@ -27,7 +35,7 @@ class EntrySettings:
 
     pose: dict[str, Turn]
     attitude: Finite
-    bodies: Names
+    bodies: SomeNames
 
 
 @validated(frozen=True, config=STRICT)

@@ -20,7 +20,7 @@ from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import dot
-from rotctl.settings.fields import STRICT, Finite, Fraction, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, Fraction, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -42,7 +42,7 @@ class Lean(NamesBodies):
     """
 
     law: Literal["lean"]
-    bodies: Names
+    bodies: SomeNames
     margin: NonNegative
     speed: Finite
     eager: Positive
@@ -84,7 +84,7 @@ class Launch(NamesBodies):
     """
 
     law: Literal["launch"]
-    bodies: Names
+    bodies: SomeNames
     gain: NonNegative
     margin: NonNegative
     forward: Finite

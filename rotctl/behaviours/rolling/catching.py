@@ -16,8 +16,8 @@ from rotctl.errors import InputError
 from rotctl.maths.rotations import Array
 from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.model import Model
-from rotctl.motion import RollAbout
-from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive
+from rotctl.motion import RollAbout, Turn
+from rotctl.settings.fields import STRICT, NonNegative, Positive
 
 
 @validated(frozen=True, config=STRICT)
@@ -32,7 +32,7 @@ class CatchSettings:
         lead: for how long ahead the tilt is reckoned, by how it changes [s].
     """
 
-    out: Annotated[dict[str, Finite], Field(min_length=1)]
+    out: Annotated[dict[str, Turn], Field(min_length=1)]
     gain: Positive
     free: Annotated[NonNegative, Field(lt=1)]
     lead: NonNegative = 0.0

@@ -15,7 +15,7 @@ from rotctl.behaviours.standing.pivoting import Escapes
 from rotctl.behaviours.standing.poising import borne_at
 from rotctl.behaviours.standing.tipping import beyond
 from rotctl.maths.rotations import dot
-from rotctl.settings.fields import SPARSE, STRICT, Finite, Names, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, Finite, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -134,7 +134,7 @@ class Tilted(NamesBodies):
     """The centre of mass leans so far over the middle of these bodies, to forward [deg]."""
 
     kind: Literal["tilted"]
-    bodies: Names
+    bodies: SomeNames
     angle: Finite
 
     def met(self, scene: Scene) -> bool:
@@ -154,7 +154,7 @@ class Passed(NamesBodies):
     """
 
     kind: Literal["passed"]
-    bodies: Names
+    bodies: SomeNames
     distance: Finite
 
     def met(self, scene: Scene) -> bool:
@@ -172,7 +172,7 @@ class Leaves(NamesBodies):
     """
 
     kind: Literal["leaves"]
-    bodies: Names
+    bodies: SomeNames
     after: NonNegative
     angle: Finite
 
@@ -194,7 +194,7 @@ class Over(NamesBodies):
     """
 
     kind: Literal["over"]
-    bodies: Names
+    bodies: SomeNames
     within: Positive
     speed: Positive
 

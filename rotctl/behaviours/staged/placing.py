@@ -13,7 +13,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -60,7 +60,7 @@ class Above(NamesBodies):
     """
 
     law: Literal["above"]
-    bodies: Names
+    bodies: SomeNames
     height: Positive
     most: Positive
     ahead: Finite = 0.0

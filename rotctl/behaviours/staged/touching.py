@@ -12,7 +12,7 @@ from rotctl.errors import InputError
 from rotctl.mechanics.bodies import body_ids, lowest_and_highest
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.terrain.pool import Basin
-from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -24,7 +24,7 @@ class Touches(NamesBodies):
     """
 
     kind: Literal["touches"]
-    bodies: Names
+    bodies: SomeNames
     after: NonNegative = 0.0
 
     def met(self, scene: Scene) -> bool:
@@ -52,7 +52,7 @@ class Lands(NamesBodies):
     """As `touches`, on the way down: feet that leave the ground in their time do not count."""
 
     kind: Literal["lands"]
-    bodies: Names
+    bodies: SomeNames
 
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
@@ -65,7 +65,7 @@ class Enters:
     """One of these bodies is under water."""
 
     kind: Literal["enters"]
-    bodies: Names
+    bodies: SomeNames
 
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there, and where there is no water."""

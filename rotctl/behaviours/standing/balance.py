@@ -14,7 +14,7 @@ from rotctl.control.task import Tasks
 from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
-from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -40,7 +40,7 @@ class Capture(NamesBodies):
     """
 
     law: Literal["capture"]
-    bodies: Names
+    bodies: SomeNames
     gain: NonNegative
     margin: NonNegative
     height: Positive

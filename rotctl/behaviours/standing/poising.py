@@ -30,7 +30,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.maths.rotations import Array, Triple, cross, dot
 from rotctl.mechanics.bodies import body_ids
-from rotctl.settings.fields import STRICT, Finite, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, Finite, NonNegative, Positive, SomeNames
 
 NARROW = 0.05  # [m] hands that are closer make no line
 
@@ -47,7 +47,7 @@ class Poise(NamesBodies):
     """
 
     law: Literal["poise"]
-    bodies: Names
+    bodies: SomeNames
     rate: Positive
     gain: NonNegative
     margin: NonNegative
@@ -89,7 +89,7 @@ class Shift(NamesBodies):
     """
 
     law: Literal["shift"]
-    bodies: Names
+    bodies: SomeNames
     rate: Positive
     most: Positive
     ahead: Finite = 0.0

@@ -7,9 +7,10 @@ swing foot and goes to where that point will be when the foot is down
 
 from dataclasses import field
 from functools import lru_cache
-from typing import Literal
+from typing import Annotated, Literal
 
 import mujoco
+from pydantic import AfterValidator
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.behaviours import support
@@ -21,7 +22,7 @@ from rotctl.control.task import Tasks
 from rotctl.maths.linear import product
 from rotctl.mechanics.bodies import body_id
 from rotctl.mechanics.model import Model
-from rotctl.settings.fields import SPARSE, STRICT, NonNegative, Positive
+from rotctl.settings.fields import SPARSE, STRICT, NonNegative, Positive, each_once
 
 DOWN = 0.5  # of a swing, from which on a touch ends it
 LATE = 1.5  # swings, after which one ends that met no ground
@@ -58,7 +59,7 @@ class Stepping:
     """
 
     law: Literal["step"]
-    bodies: tuple[str, str]
+    bodies: Annotated[tuple[str, str], AfterValidator(each_once)]
     margin: NonNegative
     spin: NonNegative
     time: Positive

@@ -58,6 +58,10 @@ class Carry:
     angles: tuple[Finite, Finite]
     throw: NonNegative = 0.0
 
+    def __post_init__(self) -> None:
+        if not self.bodies and not self.hands:
+            raise ValueError("bodies=[]: too few values, as there are no hands either")
+
     def check(self, model: Model, key: str) -> None:
         """Raises InputError for a body that is not there; `key` says where the aim stands."""
         body_ids(model.mj, self.bodies, f"{key}.bodies")

@@ -60,7 +60,7 @@ class Hazards:
     boxes: Annotated[int, Strict(), Field(ge=0, le=200)]
     box_edge: Range
     box_density: Positive
-    box_aside: NonNegative
+    box_aside: Annotated[NonNegative, Field(le=0.5 * WIDTH)]
     box_turn: HalfTurn
     spacing: Annotated[Positive, Field(ge=0.1)]
     run_in: NonNegative
