@@ -1,11 +1,13 @@
 """The command line: what it prints where, its exit codes, and how it takes misuse and signals."""
 
+import importlib
 import json
 import os
 import resource
 import signal
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from pathlib import Path
 
@@ -299,23 +301,43 @@ def _begun(out):
 
 
 def test_signals_mean_again_what_they_meant(cli):
-    both = signal.SIGINT, signal.SIGTERM
-    before = [signal.getsignal(number) for number in both]
+    some = signal.SIGINT, signal.SIGTERM, signal.SIGALRM
+    before = [sys.unraisablehook, *(signal.getsignal(number) for number in some)]
     assert cli("list")[0] == 0
-    assert [signal.getsignal(number) for number in both] == before
+    assert [sys.unraisablehook, *(signal.getsignal(number) for number in some)] == before
+
+
+class _Goes:
+    """What it does as it goes nobody can catch."""
+
+    def __init__(self, number):
+        self._number = number
+
+    def __del__(self):
+        signal.raise_signal(self._number)
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_that_an_import_loses_is_one_all_the_same(number, cli, monkeypatch):
-    """As while MuJoCo is imported, whose C code raises an ImportError in its place."""
+@pytest.mark.parametrize("where", ["import", "del"])
+def test_a_signal_that_would_be_lost_interrupts_all_the_same(
+    where, number, cli, tmp_path, monkeypatch
+):
+    """As while MuJoCo is imported, whose C code makes an ImportError of it, or none."""
+    (tmp_path / "takes_any_error.py").write_text(
+        f"import signal\ntry:\n    signal.raise_signal({int(number)})\n"
+        "except BaseException:\n    raise ImportError('initialization failed') from None\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
 
-    def imported():
-        try:
-            signal.raise_signal(number)
-        except KeyboardInterrupt:
-            raise ImportError("initialization failed") from None
+    def goes_on():
+        if where == "import":
+            importlib.import_module("takes_any_error")
+        else:
+            _Goes(number)
+        time.sleep(PATIENCE)
 
-    monkeypatch.setattr("rotctl.cli.main.gl.chosen", imported)
+    monkeypatch.delitem(sys.modules, "takes_any_error", raising=False)
+    monkeypatch.setattr("rotctl.cli.main.gl.chosen", goes_on)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may ignore it
     try:
         assert cli("show")[::2] == (130, "rotctl: interrupted; an unfinished run leaves no log\n")

@@ -1,17 +1,16 @@
-"""The command line: errors, signals and broken pipes become one line and an exit code."""
+"""The command line: errors, interrupts and broken pipes become one line and an exit code."""
 
 import argparse
 import atexit
 import gc
 import io
 import os
-import signal
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
-from typing import NoReturn
+from collections.abc import Sequence
+from contextlib import suppress
 
+from rotctl.cli.interrupting import interruptible
 from rotctl.cli.parser import parse
 from rotctl.cli.wording import one_line
 from rotctl.engine import mujoco_without_opengl
@@ -38,7 +37,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
     arguments = parse(argv)
     try:
-        with _interruptible():
+        with interruptible():
             return _commanded(arguments)
     except RotctlError as error:
         from rotctl.choices.override_files import blamed
@@ -74,38 +73,6 @@ def _commanded(arguments: argparse.Namespace) -> int:
         if sys.stdout:  # None where the shell has closed it
             sys.stdout.flush()
         return code
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """While it lasts, SIGTERM ends a run as cleanly as Ctrl-C does.
-
-    Whoever calls Python from C may lose what a signal raises: of one that comes while MuJoCo is
-    imported nothing is left but an ImportError, or a SystemError.
-    """
-    came = False
-
-    def interrupt(signum: int, frame: object) -> NoReturn:
-        nonlocal came
-        came = True
-        raise KeyboardInterrupt
-
-    usual = signal.getsignal(signal.SIGINT) is signal.default_int_handler  # else it is ignored
-    numbers = (signal.SIGTERM, signal.SIGINT) if usual else (signal.SIGTERM,)
-    try:
-        before = [(number, signal.signal(number, interrupt)) for number in numbers]
-    except ValueError:  # not the main thread, which alone gets signals
-        yield
-        return
-    try:
-        yield
-    except (ImportError, SystemError):
-        if came:
-            raise KeyboardInterrupt from None
-        raise
-    finally:
-        for number, handler in before:
-            signal.signal(number, handler)
 
 
 def _drop_stdout() -> None:

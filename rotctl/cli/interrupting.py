@@ -1,0 +1,58 @@
+"""Signals that end a command, none of which is lost."""
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
+
+SOON = 0.05  # [s]
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """While it lasts, SIGTERM ends a command as cleanly as Ctrl-C does.
+
+    What a signal raises would be lost in what nobody has called, as when an object goes, and in C
+    code that imports modules and takes any error for one of theirs. It is raised soon after.
+    """
+
+    def interrupt(signum: int, frame: FrameType | None) -> None:
+        if _imports(frame):
+            signal.setitimer(signal.ITIMER_REAL, SOON)
+        else:
+            raise KeyboardInterrupt
+
+    def lost(error: "UnraisableHookArgs") -> None:
+        if isinstance(error.exc_value, KeyboardInterrupt):
+            signal.setitimer(signal.ITIMER_REAL, SOON)
+        else:
+            told(error)
+
+    numbers = [signal.SIGTERM, signal.SIGALRM]
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored
+        numbers.append(signal.SIGINT)
+    try:
+        before = [(number, signal.signal(number, interrupt)) for number in numbers]
+    except ValueError:  # not the main thread, which alone gets signals
+        yield
+        return
+    told, sys.unraisablehook = sys.unraisablehook, lost
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        sys.unraisablehook = told
+        for number, handler in before:
+            signal.signal(number, handler)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a module is being imported there."""
+    while frame and not frame.f_code.co_filename.startswith("<frozen importlib"):
+        frame = frame.f_back
+    return frame is not None
