@@ -1,6 +1,5 @@
 """The command line: what it prints where, its exit codes, and how it takes misuse and signals."""
 
-import importlib
 import json
 import os
 import resource
@@ -317,26 +316,23 @@ class _Goes:
         signal.raise_signal(self._number)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("where", ["import", "del"])
-def test_a_signal_that_would_be_lost_interrupts_all_the_same(
-    where, number, cli, tmp_path, monkeypatch
-):
-    """As while MuJoCo is imported, whose C code makes an ImportError of it, or none."""
-    (tmp_path / "takes_any_error.py").write_text(
-        f"import signal\ntry:\n    signal.raise_signal({int(number)})\n"
-        "except BaseException:\n    raise ImportError('initialization failed') from None\n"
-    )
-    monkeypatch.syspath_prepend(tmp_path)
+class ExtensionFileLoader:
+    """As Python's own of that name: C, such as MuJoCo's, that takes any error for one of its."""
 
+    def __init__(self, number):
+        try:
+            signal.raise_signal(number)
+        except BaseException:
+            raise ImportError("initialization failed") from None
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("loses", [ExtensionFileLoader, _Goes])
+def test_a_signal_that_would_be_lost_interrupts_all_the_same(loses, number, cli, monkeypatch):
     def goes_on():
-        if where == "import":
-            importlib.import_module("takes_any_error")
-        else:
-            _Goes(number)
+        loses(number)
         time.sleep(PATIENCE)
 
-    monkeypatch.delitem(sys.modules, "takes_any_error", raising=False)
     monkeypatch.setattr("rotctl.cli.main.gl.chosen", goes_on)
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may ignore it
     try:

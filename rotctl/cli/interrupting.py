@@ -17,12 +17,12 @@ SOON = 0.05  # [s]
 def interruptible() -> Iterator[None]:
     """While it lasts, SIGTERM ends a command as cleanly as Ctrl-C does.
 
-    What a signal raises would be lost in what nobody has called, as when an object goes, and in C
-    code that imports modules and takes any error for one of theirs. It is raised soon after.
+    What a signal raises would be lost in what nobody has called, as when an object goes, and where
+    C is imported, as MuJoCo, which makes another error of it, or none. It is raised soon after.
     """
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
-        if _imports(frame):
+        if _imports_c(frame):
             signal.setitimer(signal.ITIMER_REAL, SOON)
         else:
             raise KeyboardInterrupt
@@ -51,8 +51,8 @@ def interruptible() -> Iterator[None]:
             signal.signal(number, handler)
 
 
-def _imports(frame: FrameType | None) -> bool:
-    """Whether a module is being imported there."""
-    while frame and not frame.f_code.co_filename.startswith("<frozen importlib"):
+def _imports_c(frame: FrameType | None) -> bool:
+    """Whether a module in C is being imported there: one in Python takes no longer for it."""
+    while frame and not frame.f_code.co_qualname.startswith("ExtensionFileLoader."):
         frame = frame.f_back
     return frame is not None
