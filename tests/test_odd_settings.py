@@ -76,7 +76,20 @@ def complaint(chosen, changes):
         (["behaviour=hazards"], {"terrain.box_aside": 7.0},
          "terrain.box_aside=7.0: must be less than or equal to 6"),
         (STAND, {"behaviour.tasks.spin.aim.task": "spin"},
-         "behaviour: the aim lunge is for a task 'spin' that captures"),
+         'behaviour.tasks.spin.aim.task="spin": no task of its stage with the aim capture; valid: '
+         "balance"),
+        (["behaviour=back_flip"],
+         {"behaviour.stages.5.tasks.spin.aim": {"law": "lunge", "task": "ballance", "fade": 0.1}},
+         'behaviour.stages.5.tasks.spin.aim.task="ballance": no task of its stage with the aim '
+         "capture; valid: balance"),
+        (["behaviour=back_flip"], {"behaviour.stages.3.tasks.whirl.aim.flight": "tuck"},
+         'behaviour.stages.3.tasks.whirl.aim.flight="tuck": no stage that flies; valid: flight'),
+        (["behaviour=back_flip"], {"behaviour.stages.3.tasks.whirl.aim.task": "plane"},
+         'behaviour.stages.3.tasks.whirl.aim.task="plane": no task of its stage with the aim '
+         "launch; valid: launch"),
+        (["behaviour=pirouette"], {"behaviour.stages.2.until.turning": "spin"},
+         'behaviour.stages.2.until.turning="spin": no task of its stage with the aim whirl; valid: '
+         "whirl"),
         (["behaviour=cartwheel"], {"behaviour.stages.2.tasks.carry.aim.hands": ["tail"]},
          "behaviour.stages.2.tasks.carry.aim.hands names the unknown body 'tail'; "
          f"bodies: {BODIES}"),

@@ -17,7 +17,6 @@ from rotctl.behaviours.aerial.pendulum import captured, pushed, standing
 from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.control.task import Tasks
-from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.maths.rotations import dot
 from rotctl.settings.fields import STRICT, Finite, Fraction, NonNegative, Positive, SomeNames
@@ -165,13 +164,8 @@ class Whirl(NamesNothing):
 
         Args:
             aims: of the stage's tasks; laws: of the behaviour's poses, by the name of the stage.
-
-        Raises:
-            InputError: one of them is not there.
         """
-        launch, flight = aims.get(self.task), laws.get(self.flight)
-        if not isinstance(launch, Launch):
-            raise InputError(f"behaviour: the aim whirl is for a task {self.task!r} that launches")
-        if not isinstance(flight, Flight):
-            raise InputError(f"behaviour: the aim whirl is for a stage {self.flight!r} that flies")
+        launch, flight = aims[self.task], laws[self.flight]
+        assert isinstance(launch, Launch)
+        assert isinstance(flight, Flight)  # see `staged.named_tasks`
         return launch, flight

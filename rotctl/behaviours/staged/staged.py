@@ -15,6 +15,7 @@ from rotctl.behaviours.behaviour import Placement, Signals
 from rotctl.behaviours.facing import Frame, frame_of, lying
 from rotctl.behaviours.scene import Begin, Scene, Step
 from rotctl.behaviours.staged import take_off
+from rotctl.behaviours.staged.named_tasks import require_named_tasks
 from rotctl.behaviours.staged.posing import OverPhase
 from rotctl.behaviours.staged.preparation import pose_law, prepared, task_names
 from rotctl.behaviours.staged.stages import mirrored
@@ -95,6 +96,7 @@ class Staged:
                 stage.until.check(model, f"{key}.until")
             if stage.otherwise:
                 stage.otherwise.when.check(model, f"{key}.otherwise.when")
+        require_named_tasks(place, keyed, settings.tasks)
         self.tasks = tuple(found)
         self._nothing = np.zeros(len(model.joint_names))
         self._parts = [

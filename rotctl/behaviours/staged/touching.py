@@ -103,9 +103,8 @@ class Launched(NamesNothing):
     def met(self, scene: Scene) -> bool:
         """Whether the stage ends now."""
         if self.turning and scene.airborne > 0.0:
-            whirl = scene.aims.get(self.turning)
-            if not isinstance(whirl, Whirl):
-                raise InputError(f"behaviour: launched: {self.turning!r} is no task that whirls")
+            whirl = scene.aims[self.turning]
+            assert isinstance(whirl, Whirl)  # see `staged.named_tasks`
             if whirl.enough(scene):
                 return True
         state, model = scene.state, scene.model

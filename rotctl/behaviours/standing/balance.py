@@ -11,7 +11,6 @@ from rotctl.behaviours.named_bodies import NamesBodies, NamesNothing
 from rotctl.behaviours.scene import Scene
 from rotctl.behaviours.support import Point
 from rotctl.control.task import Tasks
-from rotctl.errors import InputError
 from rotctl.maths.linear import solve
 from rotctl.mechanics.bodies import body_ids
 from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
@@ -110,9 +109,8 @@ class Lunge(NamesNothing):
 
     def fill(self, task: Tasks, kind: str, scene: Scene) -> None:
         """Set velocity and acceleration."""
-        capture = scene.aims.get(self.task)
-        if not isinstance(capture, Capture):
-            raise InputError(f"behaviour: the aim lunge is for a task {self.task!r} that captures")
+        capture = scene.aims[self.task]
+        assert isinstance(capture, Capture)  # see `staged.named_tasks`
         momentum, gravity = scene.state.momentum, -float(scene.model.gravity[2])
         ex, ey = capture.beyond(scene)
         share = min(1.0, sqrt(ex * ex + ey * ey) / self.fade)
