@@ -52,7 +52,7 @@ def interruptible() -> Iterator[None]:
 
 
 def _imports_c(frame: FrameType | None) -> bool:
-    """Whether a module in C is being imported there: one in Python takes no longer for it."""
+    """Whether a module in C is being imported there; one in Python hands on what is raised."""
     while frame and not frame.f_code.co_qualname.startswith("ExtensionFileLoader."):
         frame = frame.f_back
     return frame is not None
