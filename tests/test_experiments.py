@@ -254,8 +254,13 @@ def test_what_is_wrong_is_said(overrides, message):
          "limitations"),
         ("{title: x, source: y, matrix: [], seeds: 1.5, claims: []}",
          ": seeds=1.5: must be one seed, or several as in range(0,100) or 2000,2001"),
+        ("{title: x, source: y, matrix: [], seeds: all, claims: []}",
+         ': seeds="all": must be one seed, or several as in range(0,100) or 2000,2001'),
         ("{title: x, source: y, matrix: [], seeds: [1, 2], claims: []}",
          ": seeds: must be one seed, or several as in range(0,100) or 2000,2001"),
+        ("{title: x, source: y, matrix: [], seeds: '1', claims: [{id: '', metric: jerk, "
+         "expected: 1, tolerance: 0, source: y}]}",
+         ': claims.0.id="": reports go by it: must be printable, on one line and not empty'),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_line(tmp_path, monkeypatch, text, message):

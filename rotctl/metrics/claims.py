@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.metrics.measured import SUCCESS_RATE, Measured, in_which, measured, picked, simulated
@@ -20,6 +20,12 @@ VERDICTS = (NOT_TESTED, NOT_REPRODUCED, PARTLY, REPRODUCED)  # from worst to bes
 Where = dict[str, bool | int | float | str]
 
 
+def _told_by(name: str) -> str:
+    if not name.strip() or not name.isprintable():
+        raise ValueError("reports go by it: must be printable, on one line and not empty")
+    return name
+
+
 @validated(frozen=True, config=STRICT)
 class Claim:
     """One sentence of a paper, or of ours, as numbers.
@@ -33,7 +39,7 @@ class Claim:
         where: column -> value of the runs that it is about; all runs if empty.
     """
 
-    id: str
+    id: Annotated[str, AfterValidator(_told_by)]
     metric: str
     expected: Finite
     tolerance: NonNegative

@@ -37,7 +37,7 @@ class Deviation:
 
 def _in_words(seeds: object) -> str:
     """Seeds as a sweep takes them; of a single one YAML makes a number."""
-    if type(seeds) not in (str, int):
+    if type(seeds) not in (str, int) or not any(map(str.isdigit, str(seeds))):
         raise ValueError("must be one seed, or several as in range(0,100) or 2000,2001")
     return str(seeds)
 
