@@ -6,7 +6,8 @@
 # Happens: it is the angle between quaternions as vectors, half of that. A yaw of 1 rad is 1 in SO2 and 0.5 in SO3, and the greatest distance is 3.14 and 1.57. Samples
 #   "near" by 0.5 are up to 1 rad away. SE2StateSpace weighs its SO2 by a half, and SE3StateSpace its SO3 by 1, so that these two agree, and a metre is
 #   as far as a turn of 2 rad in both.
-# Seen with: ompl 2.0.1, Python bindings. Its reference speaks of "the angle between quaternions", as one does of the turn between attitudes. Issue 1528 of MoveIt asks of the same half in its own distanceRotation.
+# Seen with: ompl 2.0.1, Python bindings. Its reference speaks of "the angle between quaternions", as one does of the turn between attitudes. Issue 1528
+#   of MoveIt asks of the same half in its own distanceRotation.
 # Means: a planner for a body that tumbles is given a range or a goal's tolerance in radians and gets twice as much in attitude; a cost of distance sees one turn about z
 #   half as long when the free root takes the place of a hinge. Halve angles for SO3, or double its weight in compound spaces.
 set -euo pipefail
