@@ -6,8 +6,8 @@
 # Happens: the right arm has its own lengths and the widths and perimeters of the left one. A left arm 30 % thicker above the wrist makes both upper arms 69 %
 #   heavier; the same on the right changes nothing, to the last digit. Legs are right, either side. With symmetric=True, which is what it does untold, there
 #   is nothing to see.
-# Seen with: yeadon 2.0.1. Found in none of its issues.
-# Means: an inertia tensor without symmetry is what the option is for: the products of inertia that tilt a somersault, and make a twist of it, come out 0. Half of
+# Seen with: yeadon 2.0.1. A search of its issues found nothing of it.
+# Means: an inertia tensor without symmetry is what the option is for: the products of inertia that tilt a somersault, and make a twist of it, come out 0. Twelve of
 #   an athlete's eighteen measurements of that arm are taken for nothing, and errors in them are never seen. Compute the arm as the left one of a second
 #   Human with sides exchanged, and take the mirror image of its A1 and A2.
 set -euo pipefail
