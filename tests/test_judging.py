@@ -17,7 +17,7 @@ from rotctl.config.identity import run_id
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.log import RunLog
-from rotctl.metrics.criteria import judge as metrics
+from rotctl.metrics.criteria import kinds
 from rotctl.results.index import read
 from rotctl.runs.run import make, run
 from rotctl.runs.scenario import model_of
@@ -165,7 +165,7 @@ def test_points_that_differ_in_criteria_alone_are_refused():
 
 def test_a_column_means_the_same_whoever_judges():
     found = {}
-    for kind in metrics._KINDS:
+    for kind in kinds._KINDS:
         for column in kind.COLUMNS:
             assert found.setdefault(column.name, column) == column
 

@@ -630,7 +630,7 @@ def test_runs_that_are_the_same_to_the_bit_are_told(sweep, tmp_path):
     [
         ("range(0,3)", ""),
         ("range(0,9)", " The whole experiment has seed=range(0,9)."),
-        ("range(", " The whole experiment has seed=range(."),  # a stranger's
+        ("range(3", " The whole experiment has seed=range(3."),  # a stranger's
     ],
 )
 def test_few_starts_are_the_whole_experiment_or_not(sweep, seeds, rest):

@@ -29,7 +29,7 @@ def command(case):
         from rotctl.choices import config_folders
         from rotctl.cli.main import main
         from rotctl.report.site import build
-        from rotctl.sweep import cluster, workers
+        from rotctl.sweep import cluster, engine_choice
 
         os.environ.update(case.environ)
         engine, connect = Few(), cluster.connect
@@ -37,10 +37,10 @@ def command(case):
         cluster.PATIENCE = 0.2
 
         def chosen(jobs, scheduler):
-            connect(scheduler) if scheduler is not None else workers.LocalEngine(jobs)
+            connect(scheduler) if scheduler is not None else engine_choice.LocalEngine(jobs)
             return engine
 
-        workers.make_engine = chosen
+        engine_choice.make_engine = chosen
         if case.conf:
             config_folders.__file__ = str(case.conf.parent / "package/choices/here.py")
         if case.simulates:
