@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Asked to turn a joint by 30 degrees more, in every frame, bvhtoolbox turns it by 30 to 156 degrees, each frame otherwise.
+# Asked to turn a joint by 30 degrees more, in every frame, bvhtoolbox turns it by 30 to 156 degrees, differently in each frame.
 #
 # Expected: an offset of 30 degrees in one channel is one and the same turn of 30 degrees, before or after what the joint does in each frame. add_angle_offsets
 #   takes Euler angles in the channels' order, goes through quaternions and writes angles in that order again.

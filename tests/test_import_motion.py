@@ -114,8 +114,8 @@ def test_noise_is_no_motion_and_is_not_fitted(tmp_path, cli, monkeypatch):
     code, _, stderr = cli("import-motion", path, "--out", tmp_path / "a.yaml")
     assert code == 2
     assert re.fullmatch(
-        rf"rotctl: {path}: from a frame to the next the points of the body turn by (8|9)\d deg "
-        "about its middle, as the median: that is no motion\n",
+        rf"rotctl: {path}: from one frame to the next the points of the body turn by a median of "
+        r"(8|9)\d deg about its middle: that is no motion\n",
         stderr,
     )
 

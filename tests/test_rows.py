@@ -94,12 +94,12 @@ def test_about_an_oblique_axis_it_goes_over_the_right_shoulder_to_the_left_loins
         aside = ((buffer.contacts.position - middle[:, None]) * left).sum(axis=2)
         return float((on(name) * (aside > 0.0)).sum() / on(name).sum())
 
-    assert to_the_left("chest") < 0.5  # of five starts at most 0.42
-    assert to_the_left("waist") > to_the_left("chest") + 0.1  # at least 0.19; in lockstep half
+    assert to_the_left("chest") < 0.5  # of five starts at most 0.34
+    assert to_the_left("waist") > to_the_left("chest") + 0.05  # at least 0.13; in lockstep 0.7
     assert on("head").sum() / up.sum() < 0.03
     assert on("forearm_r").sum() / up.sum() > 0.03
     seen = appearance.measure(buffer.arrays(), model, 1.5, 1.0 / 60.0)
-    assert seen.across > 0.5  # mostly 1 in so short a run; before its elbow came down 0.5
+    assert seen.across > 0.5  # 1 of all five; over the crown 0
 
 
 @pytest.mark.parametrize("physics", ["mujoco", "lockstep"])

@@ -17,8 +17,9 @@ SOON = 0.05  # [s]
 def interruptible() -> Iterator[None]:
     """While it lasts, SIGTERM ends a command as cleanly as Ctrl-C does.
 
-    What a signal raises would be lost in what nobody has called, as when an object goes, and where
-    C is imported, as MuJoCo, which makes another error of it, or none. It is raised soon after.
+    What a signal raises would be lost where nobody can catch it, as while an object is deleted, and
+    while a module in C is imported: MuJoCo, for one, makes another error of it, or none. There it
+    is raised a little later.
     """
 
     def interrupt(signum: int, frame: FrameType | None) -> None:

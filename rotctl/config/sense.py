@@ -121,7 +121,7 @@ def _require_hard(character: Character, physics: LockstepPhysics) -> None:
 
 
 def _require_bent(start: StartSettings, known: Model) -> None:
-    """Joints begin within their ranges; what a start brings along other bodies take as they can."""
+    """Joints begin within their ranges; a choice's own poses any body takes as far as it can."""
     whole = brought("start", start.name)
     poses = {f"postures.{about}.pose": posture.pose for about, posture in start.postures.items()}
     if start.aloft:

@@ -21,7 +21,7 @@ ACROSS = 0.4  # [legs] and across it is no more
 STEADIER = 3.0  # the lowest point moves so much less along the axis that is up
 JUMP = 0.15  # [legs] a first frame farther from the second was put there
 JUMPS = 5.0  # and so many times the steps that follow
-FASTEST = 75.0  # [deg] from a frame to the next: with fewer than five a revolution none shows
+FASTEST = 75.0  # [deg] from a frame to the next: in fewer than five a revolution no motion shows
 _CLOUD = ("hip", "knee", "ankle", "elbow", "wrist")  # points of a side, beside those of the trunk
 _TRUNK = ("hips", "chest", "neck", "head")
 TURN = 0.6  # [rev] less of it is no roll, whatever the masses are
@@ -76,8 +76,8 @@ def require_motion(path: Path, marks: Landmarks) -> None:
     turned = float(np.median(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))))
     if turned > FASTEST:
         raise InputError(
-            f"{path}: from a frame to the next the points of the body turn by {turned:.0f} deg "
-            "about its middle, as the median: that is no motion"
+            f"{path}: from one frame to the next the points of the body turn by a median of "
+            f"{turned:.0f} deg about its middle: that is no motion"
         )
 
 
