@@ -1,5 +1,6 @@
 """The command line: what it prints where, its exit codes, and how it takes misuse and signals."""
 
+import importlib.machinery
 import json
 import os
 import resource
@@ -18,6 +19,7 @@ from sweep_cli import ENDLESS, PATIENCE, command, finish, start, until
 
 from rotctl import __version__
 from rotctl.cli import parser
+from rotctl.cli.interrupting import interruptible
 from rotctl.cli.main import main
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -304,6 +306,25 @@ def test_signals_mean_again_what_they_meant(cli):
     before = [sys.unraisablehook, *(signal.getsignal(number) for number in some)]
     assert cli("list")[0] == 0
     assert [sys.unraisablehook, *(signal.getsignal(number) for number in some)] == before
+
+
+def test_an_alarm_of_who_calls_a_command_stays_his(cli):
+    rung = []
+    before = signal.signal(signal.SIGALRM, lambda *_: rung.append(1))
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 600.0)
+        with interruptible():
+            signal.raise_signal(signal.SIGALRM)
+        assert signal.getitimer(signal.ITIMER_REAL)[0] > 0.0
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert rung == [1]
+
+
+def test_pythons_loader_of_c_is_known_by_its_name():
+    loads = importlib.machinery.ExtensionFileLoader.create_module
+    assert loads.__code__.co_qualname.startswith("ExtensionFileLoader.")
 
 
 class _Goes:

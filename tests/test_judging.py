@@ -165,7 +165,7 @@ def test_points_that_differ_in_criteria_alone_are_refused():
 
 def test_a_column_means_the_same_whoever_judges():
     found = {}
-    for kind in kinds._KINDS:
+    for kind in kinds.KINDS:
         for column in kind.COLUMNS:
             assert found.setdefault(column.name, column) == column
 

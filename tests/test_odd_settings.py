@@ -90,6 +90,11 @@ def complaint(chosen, changes):
         (["behaviour=pirouette"], {"behaviour.stages.2.until.turning": "spin"},
          'behaviour.stages.2.until.turning="spin": no task of its stage with the aim whirl; valid: '
          "whirl"),
+        (["behaviour=back_flip"],
+         {"behaviour.stages.5.otherwise": {"stage": "stand", "when": {
+             "kind": "launched", "up": 1.0, "height": 1.0, "knee": 0.1, "turning": "spin"}}},
+         'behaviour.stages.5.otherwise.when.turning="spin": no task of its stage with the aim '
+         "whirl; valid: none"),
         (["behaviour=cartwheel"], {"behaviour.stages.2.tasks.carry.aim.hands": ["tail"]},
          "behaviour.stages.2.tasks.carry.aim.hands names the unknown body 'tail'; "
          f"bodies: {BODIES}"),
@@ -222,7 +227,7 @@ def complaint(chosen, changes):
         (["behaviour=land"], {"start.falling.landing.bodies": []},
          "start.falling.landing.bodies=[]: too few values, at least 1"),
         (STAND, {"start.tilt": 30.0},
-         "start.tilt=30.0: must be less than or equal to 3.141592653589793"),
+         "start.tilt=30.0: must be less than or equal to 3.15"),
         (["behaviour=hazards"], {"terrain.bar_height": [-0.01, 0.06]},
          "terrain.bar_height=[-0.01, 0.06]: must not be negative"),
         (["behaviour=hazards"], {"terrain.bar_depth": [0.0, 0.3]},
@@ -303,3 +308,25 @@ def test_no_error_is_longer_than_a_screen(kind):
 def test_a_stop_that_a_choice_brings_along_may_be_shorter_than_steps_that_are_told():
     scenario = build(check(composed(["physics.substeps=1", "duration=0.5"])))
     assert scenario.config.physics.contact_solref[0] < 2.0 * scenario.model.mj.opt.timestep
+
+
+def test_things_that_are_not_there_have_any_size():
+    data = composed(["behaviour=hazards"])
+    data["terrain"] |= {"bars": 0, "bar_depth": [0.0, 0.0]}
+    check(data)
+    data["terrain"] |= {"bars": 3, "bar_depth": [0.2, 0.3], "boxes": 0, "box_edge": [0.0, 0.0]}
+    check(data)
+
+
+def test_half_a_turn_may_be_rounded():
+    data = composed(STAND)
+    data["start"]["tilt"] = 3.1416
+    check(data)
+
+
+def test_a_start_that_comes_along_lands_as_a_body_of_other_joints_can():
+    data = composed(["behaviour=land"])
+    for body in data["character"]["bodies"]:
+        for joint in body["joints"] if body["name"].startswith("forearm") else ():
+            joint["range"] = [0.0, 0.3]
+    Episode(build(check(data)))

@@ -19,35 +19,45 @@ def interruptible() -> Iterator[None]:
 
     What a signal raises would be lost where nobody can catch it, as while an object is deleted, and
     while a module in C is imported: MuJoCo, for one, makes another error of it, or none. There it
-    is raised a little later.
+    is raised a little later. An alarm of whoever calls the command stays his until then.
     """
+    postponed = False
+
+    def postpone() -> None:
+        nonlocal postponed
+        postponed = True
+        signal.setitimer(signal.ITIMER_REAL, SOON)
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
-        if _imports_c(frame):
-            signal.setitimer(signal.ITIMER_REAL, SOON)
+        if signum == signal.SIGALRM and not postponed and callable(usual_alarm):
+            usual_alarm(signum, frame)
+        elif _imports_c(frame):
+            postpone()
         else:
             raise KeyboardInterrupt
 
     def lost(error: "UnraisableHookArgs") -> None:
         if isinstance(error.exc_value, KeyboardInterrupt):
-            signal.setitimer(signal.ITIMER_REAL, SOON)
+            postpone()
         else:
-            told(error)
+            usual_hook(error)
 
     numbers = [signal.SIGTERM, signal.SIGALRM]
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # else it is ignored
         numbers.append(signal.SIGINT)
+    usual_alarm = signal.getsignal(signal.SIGALRM)
     try:
         before = [(number, signal.signal(number, interrupt)) for number in numbers]
     except ValueError:  # not the main thread, which alone gets signals
         yield
         return
-    told, sys.unraisablehook = sys.unraisablehook, lost
+    usual_hook, sys.unraisablehook = sys.unraisablehook, lost
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        sys.unraisablehook = told
+        sys.unraisablehook = usual_hook
+        if postponed:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before:
             signal.signal(number, handler)
 

@@ -126,6 +126,8 @@ def _require_bent(start: StartSettings, known: Model) -> None:
     poses = {f"postures.{about}.pose": posture.pose for about, posture in start.postures.items()}
     if start.aloft:
         poses["aloft.pose"] = start.aloft.pose
+    if start.falling:
+        poses["falling.landing.pose"] = start.falling.landing.pose
     for key, pose in poses.items():
         usual = find(whole, way(key))
         told = {name: angle for name, angle in pose.items() if find(usual, [name]) != angle}

@@ -1,7 +1,6 @@
 """The validated, frozen dataclasses that settings everywhere in rotctl are made of."""
 
 from itertools import pairwise
-from math import pi
 from typing import Annotated
 
 from pydantic import AfterValidator, AllowInfNan, ConfigDict, Field, Strict
@@ -25,7 +24,7 @@ Finite = Annotated[float, Strict(), AllowInfNan(False), AfterValidator((0.0).__a
 Positive = Annotated[float, Strict(), AllowInfNan(False), Field(gt=0)]
 NonNegative = Annotated[float, Strict(), AllowInfNan(False), Field(ge=0), AfterValidator(abs)]
 Fraction = Annotated[NonNegative, Field(le=1)]
-HalfTurn = Annotated[NonNegative, Field(le=pi)]  # [rad] to either side: nothing turns further
+HalfTurn = Annotated[NonNegative, Field(le=3.15)]  # [rad] to either side: nothing turns further
 Vector = tuple[Finite, Finite, Finite]
 NonNegativeVector = tuple[NonNegative, NonNegative, NonNegative]
 Range = Annotated[tuple[Finite, Finite], AfterValidator(_sorted_pair)]

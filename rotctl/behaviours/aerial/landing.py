@@ -22,7 +22,7 @@ from rotctl.maths.rotations import Array, quaternion_from_rotation_vector
 from rotctl.mechanics.bodies import ROOT_BODY, body_ids, lowest_and_highest
 from rotctl.mechanics.hulls import hulls
 from rotctl.mechanics.model import Model
-from rotctl.motion import Turn, make_pose
+from rotctl.motion import Poses, Turn, make_pose_pair
 from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
 
 ATTITUDES = np.arange(-80, 141) / 100.0  # [rad] of the pelvis from upright, at which d is tabulated
@@ -78,13 +78,13 @@ class Landing:
             key: where the settings stand.
 
         Raises:
-            InputError: a joint or a body is not there, or an angle is none of its joint.
+            InputError: a joint or a body is not there.
         """
         self._settings, self._model, self._key = settings, model, key
         self._feet = body_ids(model.mj, settings.bodies, f"{key}.bodies")
         self._ankles = model.motors(settings.ankle, f"{key}.ankle")
         self._hips = model.motors(settings.hip, f"{key}.hip") if settings.hip else []
-        self._pose = make_pose(model, settings.pose, f"{key}.pose")
+        self._pose = make_pose_pair(model, Poses(dict(settings.pose)), f"{key}.pose").start(0.0)
         self._data = mujoco.MjData(model.mj)
         found = [self.contact(a) for a in ATTITUDES.tolist()]
         low, high = model.joint_range[self._ankles[0]].tolist()

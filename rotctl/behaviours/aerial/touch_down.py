@@ -31,8 +31,10 @@ class TouchDown:
         """For a turn about an axis (3,) of the trunk to a target [rad]; `key` has the settings.
 
         Raises:
-            InputError: a joint or a body is not there.
+            InputError: a joint or a body is not there, or an angle is none of its joint.
         """
+        if settings.feet:
+            make_pose(model, settings.feet.pose, f"{key}.feet.pose")
         self._model, self._axis, self._target = model, axis, target
         self.feet = Landing(settings.feet, model, f"{key}.feet") if settings.feet else None
         if settings.entry:

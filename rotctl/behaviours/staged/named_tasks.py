@@ -33,8 +33,10 @@ def require_named_tasks(place: str, keyed: Keyed, common: Mapping[str, TaskSetti
             if isinstance(aim, Whirl):
                 _require_task(f"{said}.task", aim.task, every, Launch)
                 _require(f"{said}.flight", aim.flight, flights, "stage that flies")
-        if isinstance(stage.until, Launched) and stage.until.turning:
-            _require_task(f"{key}.until.turning", stage.until.turning, every, Whirl)
+        ends = {"until": stage.until, "otherwise.when": stage.otherwise and stage.otherwise.when}
+        for name, end in ends.items():
+            if isinstance(end, Launched) and end.turning:
+                _require_task(f"{key}.{name}.turning", end.turning, every, Whirl)
 
 
 def _require_task(key: str, named: str, every: Mapping[str, TaskSettings], law: type) -> None:

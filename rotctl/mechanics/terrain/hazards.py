@@ -70,9 +70,9 @@ class Hazards:
         if self.bar_height[0] < 0.0:
             low, high = self.bar_height
             raise ValueError(f"bar_height=[{low:g}, {high:g}]: must not be negative")
-        for name in ("bar_depth", "box_edge"):
+        for name, there in (("bar_depth", self.bars), ("box_edge", self.boxes)):
             low, high = getattr(self, name)
-            if low <= 0.0:
+            if there and low <= 0.0:
                 raise ValueError(f"{name}=[{low:g}, {high:g}]: must be more than 0")
 
     def make(self, generator: np.random.Generator, reach: float) -> "HazardousGround":

@@ -55,7 +55,7 @@ class ChainCriteria:
 
 
 Criteria = Annotated[Single | ChainCriteria, Field(discriminator="kind")]
-_KINDS = (
+KINDS = (
     rolling,
     appearance,
     pace,
@@ -72,7 +72,7 @@ _KINDS = (
     chain,
     disturbed,
 )
-COLUMNS = {column.name: column for kind in _KINDS for column in kind.COLUMNS}
+COLUMNS = {column.name: column for kind in KINDS for column in kind.COLUMNS}
 
 
 def settling(criteria: Criteria) -> float:
