@@ -67,9 +67,9 @@ def character(
     armature = round(armature or 0.01 * share * height / ADULT_HEIGHT, 6)
     damped, heavy = (any(getattr(h, it) for h in hinges) for it in ("damping", "armature"))
     usual = Usual(share, damping if damped else None, armature if heavy else None)
-    drawn = [segment for segment in segments.values() if segment.side != "right"]
-    bodies = [_body(s, segments.get(s.parent), usual, shaped[s.body]) for s in drawn]
-    made_up = {hinge.name for s in drawn for hinge in s.hinges if hinge.torque is None}
+    told = [segment for segment in segments.values() if segment.side != "right"]
+    bodies = [_body(s, segments.get(s.parent), usual, shaped[s.body]) for s in told]
+    made_up = {hinge.name for s in told for hinge in s.hinges if hinge.torque is None}
     if made_up:
         notes.append(
             f"no torque limit in the file for {', '.join(sorted(made_up))}: as strong as the adult "

@@ -174,8 +174,12 @@ def turned(x: float, y: float, forward: Point, sense: float) -> Point:
 def pendulum_rate(model: Model, state: State) -> float:
     """Omega of the inverted pendulum [1/s]: the capture point is c + v / omega."""
     x, y, z = state.momentum.com.tolist()
-    height = max(z - model.ground.height(x, y), LEAST_HEIGHT)
-    return sqrt(-float(model.gravity[2]) / height)
+    return rate_at(model, z - model.ground.height(x, y))
+
+
+def rate_at(model: Model, height: float) -> float:
+    """Omega of an inverted pendulum of some height [m], which is at least `LEAST_HEIGHT` [1/s]."""
+    return sqrt(-float(model.gravity[2]) / max(height, LEAST_HEIGHT))
 
 
 def capture_point(state: State, rate: float) -> Point:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
-SOON = 0.05  # [s]
+SOON = 0.05  # [s] until it is tried again: nobody notices, and few are in the way twice
 
 
 @contextmanager

@@ -19,6 +19,7 @@ from rotctl.settings.fields import (
     NonNegative,
     Positive,
     Range,
+    SomeNames,
     Vector,
 )
 
@@ -133,7 +134,7 @@ class Character:
     joint_damping: NonNegative
     joint_armature: NonNegative
     limit_solref: tuple[Positive, Positive]
-    trunk: Annotated[Names, Field(min_length=1)]
+    trunk: SomeNames
     exclude_from_control: Names
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
     self_collision: tuple[tuple[str, str], ...] = ()

@@ -14,7 +14,7 @@ from pydantic.dataclasses import dataclass as validated
 from rotctl.errors import InputError
 from rotctl.mechanics.bodies import SIDES
 from rotctl.mechanics.physics.mujoco_physics import IMPEDANCES
-from rotctl.settings.fields import STRICT, Fraction, Names, Positive
+from rotctl.settings.fields import STRICT, Fraction, Positive, SomeNames
 from rotctl.suggestion import instead
 
 LINEAR = (0.5, 1.0)  # midpoint and power of MuJoCo's impedance: as much more as it is deeper
@@ -31,7 +31,7 @@ class Flesh:
         onset: its impedance at the first touch [-], 1 of a rigid contact; less than the physics'.
     """
 
-    bodies: Annotated[Names, Field(min_length=1)]
+    bodies: SomeNames
     depth: Annotated[Positive, Field(le=10)]
     onset: Annotated[Fraction, Field(ge=IMPEDANCES[0])]
 

@@ -20,7 +20,7 @@ VERDICTS = (NOT_TESTED, NOT_REPRODUCED, PARTLY, REPRODUCED)  # from worst to bes
 Where = dict[str, bool | int | float | str]
 
 
-def _told_by(name: str) -> str:
+def _printable(name: str) -> str:
     if not name.strip() or not name.isprintable():
         raise ValueError("reports go by it: must be printable, on one line and not empty")
     return name
@@ -39,7 +39,7 @@ class Claim:
         where: column -> value of the runs that it is about; all runs if empty.
     """
 
-    id: Annotated[str, AfterValidator(_told_by)]
+    id: Annotated[str, AfterValidator(_printable)]
     metric: str
     expected: Finite
     tolerance: NonNegative

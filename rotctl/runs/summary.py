@@ -8,6 +8,7 @@ from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.config.fit import require_fit
 from rotctl.config.schema import Config
 from rotctl.log import RunLog, TrajectoryBuffer
+from rotctl.mechanics.changes import Load
 from rotctl.mechanics.disturbance import Calm
 from rotctl.mechanics.model import Model
 from rotctl.metrics import disturbed
@@ -33,7 +34,7 @@ def summarise(
     """
     log = run.arrays() if isinstance(run, TrajectoryBuffer) else run
     config, model = scenario.config, scenario.model
-    if config.disturbance.changes_model:  # a load is no part of the body whose weights are told
+    if isinstance(config.disturbance, Load):  # it is no part of the body whose weights are told
         model = simulated_model_of(config)
     return _judged(config, scenario.run_id, model, log, ending, wall)
 

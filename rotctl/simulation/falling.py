@@ -75,7 +75,11 @@ class Falling:
 def draw(
     settings: FallingSettings, model: Model, forward: float, generator: np.random.Generator
 ) -> Falling:
-    """Draw how a body falls that moves forward at a speed [m/s]."""
+    """Draw how a body falls that moves forward at a speed [m/s].
+
+    Raises:
+        InputError: a joint or a body of the landing is not there.
+    """
     gap, speed, about_left, shift = (
         float(generator.uniform(*bounds))
         for bounds in (settings.gap, settings.speed, settings.momentum, settings.offset)

@@ -1,6 +1,5 @@
 """The body as a pendulum on what it stands on: what pressure within its feet does to it."""
 
-from math import sqrt
 from typing import NamedTuple
 
 from rotctl.behaviours import support
@@ -73,5 +72,4 @@ def pushed(scene: Scene, base: Base, way: Array, wanted: float, margin: float) -
 
 def pendulum_rate(scene: Scene) -> float:
     """Omega of the pendulum that stands on the floor [1/s], beside which there may be an abyss."""
-    height = float(scene.state.momentum.com[2]) - scene.floor
-    return sqrt(-float(scene.model.gravity[2]) / max(height, support.LEAST_HEIGHT))
+    return support.rate_at(scene.model, float(scene.state.momentum.com[2]) - scene.floor)

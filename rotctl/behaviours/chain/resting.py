@@ -1,14 +1,12 @@
 """When a part of a chain is over whose last stage has no condition: it rests on its feet."""
 
 from math import cos, radians
-from typing import Annotated
 
-from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
 from rotctl.maths.rotations import dot
 from rotctl.mechanics.state import State
-from rotctl.settings.fields import STRICT, Names, NonNegative, Positive
+from rotctl.settings.fields import STRICT, NonNegative, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -24,7 +22,7 @@ class RestSettings:
     """
 
     seconds: NonNegative
-    feet: Annotated[Names, Field(min_length=1)]
+    feet: SomeNames
     lean: Positive
     speed: Positive
     height: Positive

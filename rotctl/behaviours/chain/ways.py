@@ -13,7 +13,7 @@ from rotctl.maths.rotations import dot
 from rotctl.mechanics.bodies import body_ids
 from rotctl.mechanics.model import Model
 from rotctl.mechanics.state import State
-from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Names, Positive
+from rotctl.settings.fields import MOST_PARTS, SPARSE, STRICT, Positive, SomeNames
 
 
 @validated(frozen=True, config=STRICT)
@@ -44,7 +44,7 @@ class OnFeet:
     """
 
     kind: Literal["on_feet"]
-    feet: Annotated[Names, Field(min_length=1)]
+    feet: SomeNames
     out: Positive
     lean: Annotated[Positive, Field(le=180.0)]
     speed: Positive

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass as validated
 
-from rotctl.settings.fields import GROWING, STRICT, Finite, Names, NonNegative, Positive
+from rotctl.settings.fields import GROWING, STRICT, Finite, NonNegative, Positive, SomeNames
 
 Phase = Annotated[Finite, Field(ge=-1, le=1)]  # [rev] who means degrees is told
 Share = Annotated[NonNegative, Field(le=1)]
@@ -60,7 +60,7 @@ class PaceSettings:
     surge_from: Phase
     wait: Phase
     width: Annotated[Positive, Field(le=0.5)]
-    over: Annotated[Names, Field(min_length=1)]
+    over: SomeNames
     ahead: Finite
     settling: tuple[NonNegative, NonNegative]
     brake: Annotated[Positive, Field(ge=1)]

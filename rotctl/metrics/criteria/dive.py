@@ -178,7 +178,7 @@ def _clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool 
 
 
 def _stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
-    """The foremost place that it last stood on, ahead and over the ground [m].
+    """The foremost place that it last stood on: how far ahead, and its height in the world [m].
 
     Args:
         first: row of the flight.
@@ -190,7 +190,10 @@ def _stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
 
 
 def _edge(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
-    """Where the ground below the centre of mass falls away, as `_stood`; NaN if it never does."""
+    """Where the ground below the centre of mass falls away, as `_stood`; NaN if it never does.
+
+    Half-way between the two steps around it, which is within half a step's way of it.
+    """
     falls = np.flatnonzero(np.diff(floats(log, "trajectory/ground_height")) < 0.0)
     if not len(falls):
         return math.nan, PLATFORM
