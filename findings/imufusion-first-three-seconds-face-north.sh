@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Turn by 90 degrees in the first two seconds of a recording and imufusion's heading is 0 after it; spin once faster than the gyroscope measures and all turns before are gone.
+# Turn by 90 degrees in a recording's first two seconds and imufusion's heading is 0 after it; spin once beyond the sensor's range and all turns before are gone.
 #
 # Expected: without a magnetometer the heading is unknown up to a constant, and 0 at the first sample. From there on the gyroscope carries it, while
 #   a high gain lets inclination settle. A spin beyond the range costs the part of the turn that was cut off, and the heading before it counts on.
