@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # A skeleton that lists its turns as rz ry rx: pyacclaim takes the turn about z for the one about x, and the other way round.
 #
-# Expected: in an ASF file "order" of the root and "dof" of a bone say which numbers stand in an AMC line, one after the other, and in which sequence the turns
-#   are made; "TX TY TZ RZ RY RX" for the root is the one that the format's description names for Softimage. A reader goes by them.
+# Expected: in an ASF file "order" of the root and "dof" of a bone say which numbers stand in an AMC line, one after the other; of the root also in which sequence its
+#   turns are made, where "TX TY TZ RZ RY RX" is named as the one that Softimage takes. A reader goes by them.
 # Happens: both are read, and numbers are taken for x, y and z in this order all the same. A root turned by 40 degrees about z lies turned by 40 about x; a thigh
 #   swung forward by 40 is swung aside by 40. The ankle of a leg of 0.8 m is 0.73 m from where it belongs. With "RX RY RZ" and "rx ry rz",
 #   which the files of CMU's collection have, all is right, and so is a bone that leaves some axes out in this order. The last frame of the file is
