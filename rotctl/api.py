@@ -98,18 +98,18 @@ def sweep(
     from rotctl.results import experiments
     from rotctl.results.table import table
     from rotctl.sweep import keep
+    from rotctl.sweep.asked import asked
     from rotctl.sweep.claimed import require_claims
     from rotctl.sweep.engine_choice import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
-    from rotctl.sweep.plan import plan, planned
-    from rotctl.sweep.points import points
+    from rotctl.sweep.plan import plan
 
     given, folder = _words(overrides), _path("out", out)
     if not isinstance(jobs, int | None):
         raise InputError(f"jobs: must be a number or None, not of {_kind(jobs)}")
     with _own(config_dir):
-        wanted = planned(points(experiments.matrix(given)))
+        wanted = asked(given)
         require_claims(given, wanted)
         with closing(make_engine(jobs, None)) as engine, locked(folder):
             if experiment := experiments.named(given):

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 import pytest
 from browser import Browser, executable
+from here import without_processes
 
 from rotctl.choices.config_folders import OWN
 from rotctl.cli.main import main
@@ -196,6 +197,12 @@ def _what_is_shipped_is_composed_once():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(loading, "composed", composed)
         yield
+
+
+@pytest.fixture
+def here_alone(monkeypatch):
+    """Commands carry their tasks out in this process."""
+    without_processes(monkeypatch)
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ from rotctl.metrics.claims import (
     judge,
     overall,
 )
+from rotctl.metrics.measured import picked
 
 
 def claim(metric="success_rate", expected=0.9, tolerance=0.0, comparison="at_least", **where):
@@ -158,3 +159,11 @@ def test_a_claim_is_checked(wrong):
     given = {"id": "c", "metric": "success_rate", "expected": 0.9, "tolerance": 0.0, "source": "x"}
     with pytest.raises(ValidationError):
         Claim(**(given | wrong))
+
+
+@pytest.mark.parametrize(
+    ("wanted", "runs"), [(True, [0]), (1.0, [1]), (1, [1]), (False, [2]), (0, [3])]
+)
+def test_yes_is_no_1(wanted, runs):
+    table = pd.DataFrame({"x": pd.Series([True, 1.0, False, 0, None], dtype=object)})
+    assert picked(table, {"x": wanted}).index.tolist() == runs

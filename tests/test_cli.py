@@ -362,6 +362,11 @@ def test_a_signal_that_would_be_lost_interrupts_all_the_same(loses, number, cli,
         signal.signal(signal.SIGINT, before)
 
 
+def test_a_signal_of_the_last_moment_is_not_lost():
+    with pytest.raises(KeyboardInterrupt), interruptible(), suppress(ImportError):
+        ExtensionFileLoader(signal.SIGTERM)
+
+
 def test_what_goes_wrong_after_a_signal_is_told_as_what_it_is(cli, monkeypatch):
     """Of a signal that was caught, as one is by who cleans up."""
 

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from rotctl.config.fit import require_fit
 from rotctl.config.loading import load
 from rotctl.metrics.criteria import dive
 from rotctl.runs.run import in_memory
@@ -117,6 +118,25 @@ def test_a_joint_of_the_straight_pose_may_be_one_of_a_side(back):
     told = dive.judge(log, one, -540.0, PERIOD)[0]["bent_most"]
     bend = log["trajectory/qpos"][dive.entry(log), knee]
     assert told == pytest.approx(np.degrees(1.0 - bend))
+
+
+def test_what_a_chest_that_is_not_there_would_bend_the_waist_bends():
+    log = {"model/joint": np.array([b"waist_y", b"knee_l"]), "trajectory/qpos": np.zeros((2, 9))}
+    log["trajectory/qpos"][:, 7] = 0.3, 0.5
+    straight = {"waist_y": 0.2, "chest_y": 0.1}
+    found = dive._bent(log, SimpleNamespace(straight=straight))
+    assert found == pytest.approx([0.0, np.degrees(0.2)])
+    with_chest = log | {"model/joint": np.array([b"waist_y", b"chest_y"])}
+    found = dive._bent(with_chest, SimpleNamespace(straight=straight))
+    assert found == pytest.approx(np.degrees([0.1, 0.3]))
+
+
+def test_an_older_dive_is_judged_by_a_pose_that_no_joint_reaches(back):
+    """As it was when it was made; a new one with it is refused."""
+    config = back[0].config
+    odd = replace(config, criteria=replace(config.criteria, straight={"knee": 9.0}))
+    require_fit(odd, back[0].known)
+    assert build(odd, again=True).run_id == back[0].run_id
 
 
 def test_water_is_lower_than_the_platform_and_stops_nobody():

@@ -115,6 +115,30 @@ def test_a_claim_that_nobody_can_test_is_refused_before_the_sweep(
 
 
 @pytest.mark.parametrize(
+    ("grid", "further", "message"),
+    [
+        ("behaviour=stnad", [], '+experiment=mine: behaviour="stnad": no such'),
+        ("behaviour=stnad", ["seed=3"], '+experiment=mine: behaviour="stnad": no such'),
+        ("duration=range(0,", [], "+experiment=mine: override 'duration=range(0,': cannot"),
+        ("duration=0.3", ["behaviour=stnad"], 'behaviour="stnad": no such'),
+    ],
+)
+def test_what_is_wrong_with_an_experiments_grid_names_it(
+    tmp_path, monkeypatch, capsys, grid, further, message
+):
+    (tmp_path / "experiments").mkdir()
+    text = OWN.replace("behaviour=stand,stand_step", grid).replace(', "duration=0.3"', "")
+    text = text.replace("METRIC", "lean_most").replace("WHERE", "")
+    (tmp_path / "experiments" / "mine.yaml").write_text(text)
+    monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
+    out = tmp_path / "out"
+    assert main(["sweep", "+experiment=mine", *further, "--out", str(out), "--dry-run"]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith(f"rotctl: {message}")
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
     "overrides",
     [
         ["behaviour=forward_roll_1"],

@@ -9,7 +9,6 @@ import sqlite3
 import struct
 
 import pytest
-from here import without_processes
 
 from rotctl import files
 from rotctl.errors import InputError
@@ -18,6 +17,7 @@ from rotctl.tune.history import open_history
 from rotctl.tune.space import load_space
 
 NOT_PLAIN = "is no plain file"
+pytestmark = pytest.mark.usefixtures("here_alone")
 
 
 @pytest.fixture
@@ -234,13 +234,6 @@ def test_a_folder_found_by_itself_is_no_link(folder, tmp_path):
 
 
 # ---------------------------------------------------------------- in a stranger's folder
-
-
-@pytest.fixture
-def cli(cli, monkeypatch):
-    """Calls the command line, which carries its tasks out here."""
-    without_processes(monkeypatch)
-    return cli
 
 
 SWEEP = ("duration=0.5", "--quiet", "--out")

@@ -5,7 +5,7 @@ import os
 import shutil
 
 import pytest
-from here import swept, without_processes
+from here import swept
 from test_summarise import change
 
 from rotctl.report.site import build
@@ -14,6 +14,7 @@ from rotctl.results.table import table
 GRID = ("duration=0.5", "seed=range(0,2)")
 SWEEP = [*GRID, "--quiet", "--out"]
 COMMANDS = ("summarise", "report", "sweep")
+pytestmark = pytest.mark.usefixtures("here_alone")
 
 
 @pytest.fixture(scope="module")
@@ -26,13 +27,6 @@ def sweep(made, tmp_path, monkeypatch):
     """A copy of the sweep, to be harmed; drawn quickly, without pictures."""
     monkeypatch.setattr(build, "MOST_DRAWN", 0)
     return shutil.copytree(made, tmp_path / "sweep")
-
-
-@pytest.fixture
-def cli(cli, monkeypatch):
-    """Calls the command line, which carries its tasks out here."""
-    without_processes(monkeypatch)
-    return cli
 
 
 @pytest.fixture

@@ -218,6 +218,12 @@ def complaint(chosen, changes):
          "shoulder_y, shoulder_z, waist_x, waist_y, waist_z, limb joints also with _l or _r"),
         (["behaviour=dive_forward"], {"criteria.straight.shoulder_y": 180.0},
          "criteria.straight.shoulder_y=180: this joint goes from -1 to 3.1 rad"),
+        (["behaviour=dive_forward"], {"behaviour.heading": 90.0},
+         "behaviour.heading=90: never comes over the edge of terrain=pool, which is towards +x; "
+         "give less than 90 to either side of 0"),
+        (["behaviour=dive_armstand_backward"], {"behaviour.heading": 0.0},
+         "behaviour.heading=0: never comes over the edge of terrain=pool, which is towards +x; "
+         "give less than 90 to either side of 180"),
         (STAND, {"start.postures.left.pose.knee": 90.0},
          "start.postures.left.pose.knee=90: this joint goes from -0.02 to 2.7 rad"),
         (["behaviour=flight"], {"start.aloft.pose.elbow": -1.0},

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 from contextlib import closing
 from multiprocessing import active_children
 
@@ -10,6 +11,7 @@ import sweep_cli
 import sweep_tasks
 from sweep_cli import until
 
+from rotctl.cli.interrupting import interruptible
 from rotctl.errors import InputError
 from rotctl.sweep import worker
 from rotctl.sweep.engine_choice import make_engine
@@ -25,6 +27,13 @@ def engine():
 def test_every_item_gives_its_result(engine):
     results = dict(engine.map(sweep_tasks.square, range(50), retries=0))
     assert results == {i: i * i for i in range(50)}
+
+
+def test_a_forked_worker_takes_no_signal_as_the_command_does(monkeypatch):
+    monkeypatch.setattr(worker, "_alone", lambda: True)
+    with interruptible(), closing(make_engine(1, None)) as forked:
+        told = dict(forked.map(signal.getsignal, [signal.SIGTERM, signal.SIGALRM], retries=0))
+    assert told == {0: signal.SIG_DFL, 1: signal.SIG_DFL}
 
 
 def test_nothing_to_do(engine):

@@ -29,11 +29,13 @@ def interruptible() -> Iterator[None]:
         signal.setitimer(signal.ITIMER_REAL, SOON)
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
+        nonlocal postponed
         if signum == signal.SIGALRM and not postponed and callable(usual_alarm):
             usual_alarm(signum, frame)
         elif _imports_c(frame):
             postpone()
         else:
+            postponed = False
             raise KeyboardInterrupt
 
     def lost(error: "UnraisableHookArgs") -> None:
@@ -60,6 +62,8 @@ def interruptible() -> Iterator[None]:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in before:
             signal.signal(number, handler)
+    if postponed:  # and over before it was tried again
+        raise KeyboardInterrupt
 
 
 def _imports_c(frame: FrameType | None) -> bool:

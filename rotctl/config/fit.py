@@ -18,7 +18,6 @@ from rotctl.mechanics.physics import LockstepPhysics
 from rotctl.metrics.criteria.dive import WATCHED, DiveCriteria
 from rotctl.metrics.criteria.kinds import ChainCriteria, Criteria
 from rotctl.metrics.criteria.orientation import OrientationCriteria
-from rotctl.motion import make_pose
 from rotctl.settings.fields import Vector, ends
 
 ROUNDING = 1e-9  # [s]
@@ -93,7 +92,8 @@ def _require_judged(
             _require_judged(part.behaviour, own, model, place)
     if isinstance(criteria, DiveCriteria):
         _require_watched(behaviour, criteria, key)
-        make_pose(model, criteria.straight, f"{key}.straight")
+        for name in criteria.straight:
+            model.motors(name, f"{key}.straight")
     of = next((f".{part}" for part in ("landing", "stand") if hasattr(criteria, part)), "")
     stands = getattr(criteria, of[1:]) if of else criteria
     for name in getattr(stands, "feet", ()):

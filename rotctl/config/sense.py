@@ -4,6 +4,7 @@ from rotctl.behaviours import BehaviourSettings
 from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.behaviours.rolling.settings import RollingSettings
 from rotctl.choices.brought import brought
+from rotctl.config.diving import require_dive
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.mechanics.changes import Slip
@@ -35,8 +36,8 @@ def require_sense(config: Config, known: Model) -> None:
 
     Raises:
         InputError: a finish comes too late, the ground may be drawn as none can be, a joint is to
-            begin where it cannot be, or what is said of a contact, a pull or a halt acts on
-            nothing.
+            begin where it cannot be, a dive goes nowhere, or what is said of a contact, a pull or a
+            halt acts on nothing.
     """
     _require_ground(config)
     if not isinstance(config.physics, LockstepPhysics):
@@ -48,6 +49,7 @@ def require_sense(config: Config, known: Model) -> None:
     _require_pulled(config.behaviour, config.excursion)
     _require_halts(config.behaviour)
     _require_end(config.behaviour, config.duration)
+    require_dive(config, known)
 
 
 def _require_ground(config: Config) -> None:

@@ -39,8 +39,13 @@ def picked(table: "pd.DataFrame", where: Mapping[str, Any]) -> "pd.DataFrame":
         column = f"config.{key}" if f"config.{key}" in table else key
         if column not in table:
             return table.iloc[:0]
-        table = table[table[column] == value]
+        table = table[[same(found, value) for found in table[column].tolist()]]
     return table
+
+
+def same(found: object, wanted: object) -> bool:
+    """Whether a run has what is asked for; yes is no 1, and no is no 0."""
+    return bool(found == wanted) and isinstance(found, bool) == isinstance(wanted, bool)
 
 
 def measured(done: "pd.DataFrame", metric: str, quantile: float = 0.5) -> Measured:

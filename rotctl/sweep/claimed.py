@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.metrics.criteria.kinds import COLUMNS
-from rotctl.metrics.measured import SUCCESS_RATE
+from rotctl.metrics.measured import SUCCESS_RATE, same
 from rotctl.results import experiments
 from rotctl.results.keys import value_at
 from rotctl.runs.summary import numbers
@@ -96,7 +96,7 @@ def _faults(
 
 
 def _picked(where: Mapping[str, Any], runs: Sequence[Values]) -> list[Values]:
-    return [run for run in runs if all(_value(key, run) == it for key, it in where.items())]
+    return [run for run in runs if all(same(_value(key, run), it) for key, it in where.items())]
 
 
 def _measured(runs: Sequence[Values]) -> set[str]:

@@ -48,16 +48,18 @@ def add_sweep(commands: Commands) -> None:
 def sweep(arguments: argparse.Namespace) -> int:
     """Simulate a grid of runs, or what is left of it."""
     from contextlib import closing
+    from functools import partial
 
     from rotctl.results import experiments, manifest
     from rotctl.sweep import keep
+    from rotctl.sweep.asked import asked
     from rotctl.sweep.claimed import require_claims
     from rotctl.sweep.engine_choice import make_engine
     from rotctl.sweep.launch import launch
     from rotctl.sweep.lock import locked
     from rotctl.sweep.messages import at_the_end, at_the_start, failures, without_running
-    from rotctl.sweep.plan import plan, planned
-    from rotctl.sweep.points import count, points
+    from rotctl.sweep.plan import plan
+    from rotctl.sweep.points import count
     from rotctl.sweep.progress import shown
 
     if arguments.retries < 0:
@@ -70,8 +72,8 @@ def sweep(arguments: argparse.Namespace) -> int:
     watched = None if not arguments.quiet else True  # None: only on a terminal
     matrix, tqdm = experiments.matrix(arguments.overrides), bars()
     with closing(make_engine(arguments.jobs, arguments.scheduler)) as engine:
-        with tqdm(points(matrix), desc="planning", unit="point", delay=1.0, disable=watched) as bar:
-            runs = planned(bar)
+        bar = partial(tqdm, desc="planning", unit="point", delay=1.0, disable=watched)
+        runs = asked(arguments.overrides, bar)
         require_claims(arguments.overrides, runs)
         if arguments.dry_run:
             print(without_running(runs, out, engine.workers, kept, count(matrix)))

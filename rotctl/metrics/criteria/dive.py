@@ -141,7 +141,11 @@ def _bent(log: Arrays, criteria: DiveCriteria) -> list[float]:
     """Of the joint that is furthest off the straight pose (steps,) [deg]."""
     names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/joint"]).tolist()]
     angles = floats(log, "trajectory/qpos")[:, 7 : 7 + len(names)]
-    straight = criteria.straight
+    straight = dict(criteria.straight)
+    for axis in "yxz":  # what a chest would bend that is not there, the waist bends beside its own
+        if f"chest_{axis}" in straight.keys() - set(names):
+            waist = f"waist_{axis}"
+            straight[waist] = straight.get(waist, 0.0) + straight.pop(f"chest_{axis}")
     wanted = [straight.get(name, straight.get(_whole(name), math.nan)) for name in names]
     off = np.degrees(np.abs(angles - np.array(wanted)))
     return [float(value) for value in np.nanmax(off, axis=1)]

@@ -1,0 +1,48 @@
+"""Whether a dive that is newly asked for can come over the edge, and enter as it is to."""
+
+import math
+
+from rotctl.behaviours import BehaviourSettings
+from rotctl.behaviours.chain.settings import ChainSettings
+from rotctl.behaviours.staged.settings import StagedSettings
+from rotctl.config.schema import Config
+from rotctl.errors import InputError
+from rotctl.mechanics.model import Model
+from rotctl.mechanics.terrain import Pool
+from rotctl.metrics.criteria.dive import DiveCriteria
+from rotctl.metrics.criteria.kinds import ChainCriteria, Criteria
+from rotctl.motion import make_pose
+
+ROUNDING = 1e-9  # [-] of a cosine
+
+
+def require_dive(config: Config, known: Model) -> None:
+    """See that a dive is one; nothing is asked of what is none.
+
+    Raises:
+        InputError: it never comes over the edge, or its straight pose is none of the body's.
+    """
+    _require_straight(config.behaviour, config.criteria, known)
+    behaviour, ground = config.behaviour, config.terrain
+    if not isinstance(config.criteria, DiveCriteria) or not isinstance(ground, Pool):
+        return
+    if not isinstance(behaviour, StagedSettings):
+        return
+    usual = 0.0 if behaviour.target_excursion > 0.0 else 180.0  # [deg] who dives backward backs
+    if math.cos(math.radians(behaviour.heading - usual)) < ROUNDING:
+        raise InputError(
+            f"behaviour.heading={behaviour.heading:g}: never comes over the edge of "
+            f"terrain={ground.name}, which is towards +x; give less than 90 to either side of "
+            f"{usual:g}"
+        )
+
+
+def _require_straight(
+    behaviour: BehaviourSettings, criteria: Criteria, known: Model, key: str = "criteria"
+) -> None:
+    if isinstance(criteria, DiveCriteria):
+        make_pose(known, criteria.straight, f"{key}.straight")
+    if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
+        for number, (part, own) in enumerate(zip(behaviour.parts, criteria.parts, strict=True)):
+            place = f"{part.place(number)}: criteria" if part.said else f"{key}.parts.{number}"
+            _require_straight(part.behaviour, own, known, place)
