@@ -6,6 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 from logs import changed
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from PIL import Image
 
 from rotctl.cli.main import main
@@ -352,3 +354,31 @@ def test_prints_are_drawn(log, tmp_path):
     assert main(["plot", str(log.path), "--from-behind", "--out", str(tmp_path / "p.png")]) == 0
     with pytest.raises(InputError, match="valid: 0 to 0.983"):
         prints(log, tmp_path / "x.png", 9.0, 9.5)
+
+
+def test_a_long_reason_ends_where_the_page_does(log, tmp_path):
+    outcome = {"behaviour": "roll", "success": False, "failure_reason": "much to say " * 20}
+    long = changed(log, tmp_path, outcome=outcome)
+    figure = Figure(figsize=module.SIZE)
+    FigureCanvasAgg(figure)
+    module.heading(figure, long)
+    verdict = figure.texts[-1].get_window_extent()
+    assert figure.texts[-1].get_text().startswith("FAILED: much")
+    assert verdict.x1 <= 0.936 * figure.bbox.width
+
+
+def test_rates_are_told_along_the_way(log, tmp_path):
+    """As they are drawn: of who dives backward, along -x, forward is no x."""
+    plot(log, tmp_path / "plot.svg")
+    told = words(tmp_path / "plot.svg")
+    assert {"dL/dt, forward", "dL/dt, left", "dH/dt, left (in-plane)", "dH/dt, up"} <= {*told}
+
+
+def test_what_is_nothing_is_drawn_as_0(log, tmp_path):
+    """And not as a billionth, whose power of ten would stand over the title."""
+    arrays = log.arrays()
+    names = [name for name in arrays if "_momentum_rate_" in name]
+    none = {name: np.zeros_like(arrays[name]) for name in names}
+    none["contacts/body"] = np.full_like(arrays["contacts/body"], -1)
+    plot(changed(log, tmp_path, none), tmp_path / "plot.svg")
+    assert not any(word.startswith("1e") for word in words(tmp_path / "plot.svg"))

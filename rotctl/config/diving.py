@@ -26,7 +26,7 @@ def require_dive(config: Config, known: Model) -> None:
     behaviour, ground = config.behaviour, config.terrain
     if not isinstance(config.criteria, DiveCriteria) or not isinstance(ground, Pool):
         return
-    if not isinstance(behaviour, StagedSettings):
+    if not isinstance(behaviour, StagedSettings) or config.start.aloft:  # it is over it already
         return
     usual = 0.0 if behaviour.target_excursion > 0.0 else 180.0  # [deg] who dives backward backs
     if math.cos(math.radians(behaviour.heading - usual)) < ROUNDING:

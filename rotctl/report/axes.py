@@ -68,7 +68,7 @@ def rate(axes: Any, time: Array, rates: Rates, axis: int) -> None:
         spared = 3.0 if label == "realised" else 0.5  # [%] at each end
         ends.append(np.percentile(finite, [spared, 100.0 - spared]) if len(finite) else np.zeros(2))
     low, high = float(np.min(ends)), float(np.max(ends))
-    room = 0.1 * (high - low) + 1e-9
+    room = max(0.1 * (high - low), 0.1)  # less is none, and would be told as 1e-9 over the title
     axes.set_ylim(low - room, high + room)
 
 
@@ -85,6 +85,8 @@ def count(axes: Any, run: Signals) -> None:
     """How many contacts."""
     axes.fill_between(run.time, run.count, step="post", color=LIGHT, lw=0, label="all")
     axes.fill_between(run.time, run.used, step="post", color=ORANGE, lw=0, label="used")
+    axes.set_ylim(0, max(1.0, 1.05 * run.count.max(initial=0)))
+    axes.yaxis.get_major_locator().set_params(integer=True)
     legend(axes)
 
 

@@ -119,9 +119,9 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     draw.in_plane(axes(1, left, "Excursion, in-plane", "rev"), run)
     draw.out_of_plane(axes(1, right, "Integral of ω, out-of-plane", "deg"), run)
     linear, angular = linear_rates(log, rows, character.gravity(model)), angular_rates(log, rows)
-    for i, axis in enumerate("xyz"):
+    for i, axis in enumerate(("forward", "left", "up")):
         third = slice(2 * i, 2 * i + 2)
-        name = {"y": f"{axis} (in-plane)"}.get(axis, axis)
+        name = {"left": f"{axis} (in-plane)"}.get(axis, axis)
         draw.rate(axes(2, third, f"dL/dt, {axis}", "N" if i == 0 else ""), run.time, linear, i)
         draw.rate(axes(3, third, f"dH/dt, {name}", "N m" if i == 0 else ""), run.time, angular, i)
         if i == 1:
@@ -146,4 +146,7 @@ def heading(figure: Any, log: RunLog, top_of: float = SIZE[1]) -> None:
     # parse_math: a stranger's dollar signs are no formulas.
     figure.text(0.1, first, top.name, size=13, weight="bold", parse_math=False)
     figure.text(0.935, first, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
-    figure.text(0.1, second, top.verdict, size=9, color=colour, weight="bold", parse_math=False)
+    verdict = figure.text(0.1, second, top.verdict, color=colour, weight="bold", parse_math=False)
+    verdict.set_size(9)
+    room = (0.935 - 0.1) * figure.bbox.width
+    verdict.set_size(9 * min(1.0, room / verdict.get_window_extent().width))
