@@ -222,8 +222,8 @@ def complaint(chosen, changes):
          "behaviour.heading=90: never comes over the edge of terrain=pool, which is towards +x; "
          "give less than 90 to either side of 0"),
         (["behaviour=dive_armstand_backward"], {"behaviour.heading": 0.0},
-         "behaviour.heading=0: never comes over the edge of terrain=pool, which is towards +x; "
-         "give less than 90 to either side of 180"),
+         "behaviour.heading=0: never comes over the edge of terrain=pool_hands, which is towards "
+         "+x; give less than 90 to either side of 180"),
         (STAND, {"start.postures.left.pose.knee": 90.0},
          "start.postures.left.pose.knee=90: this joint goes from -0.02 to 2.7 rad"),
         (["behaviour=flight"], {"start.aloft.pose.elbow": -1.0},
