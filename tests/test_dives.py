@@ -199,3 +199,7 @@ def test_who_leans_over_the_edge_and_loses_it_for_a_step_is_not_over_the_abyss()
     away = staged.begin(0.0, state)
     gone = away._replace(begin=away.begin._replace(place=away.begin.place + [1.0, 0.0, 0.0]))
     assert staged._scene(gone, leaning).floor == -10.0
+
+
+def test_who_begins_in_the_air_may_head_anywhere():
+    build(load(["behaviour=flight", "behaviour.target_excursion=-540", "behaviour.heading=90"]))
