@@ -205,7 +205,9 @@ def test_a_behaviour_that_is_not_there_is_one_line(tmp_path, monkeypatch, capsys
     monkeypatch.setenv("ROTCTL_CONFIG_DIR", str(tmp_path))
     assert main(["sweep", "+experiment=wrong", "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert error.startswith('rotctl: +experiment=wrong: behaviour="nobody": no such choice; valid: ')
+    assert error.startswith(
+        'rotctl: +experiment=wrong: behaviour="nobody": no such choice; valid: '
+    )
     assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
 

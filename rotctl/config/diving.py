@@ -3,6 +3,7 @@
 import math
 
 from rotctl.behaviours import BehaviourSettings
+from rotctl.behaviours.aerial.launch import Launch
 from rotctl.behaviours.chain.settings import ChainSettings
 from rotctl.behaviours.staged.settings import StagedSettings
 from rotctl.config.schema import Config
@@ -28,13 +29,22 @@ def require_dive(config: Config, known: Model) -> None:
         return
     if not isinstance(behaviour, StagedSettings) or config.start.aloft:  # it is over it already
         return
-    usual = 0.0 if behaviour.target_excursion > 0.0 else 180.0  # [deg] who dives backward backs
-    if math.cos(math.radians(behaviour.heading - usual)) < ROUNDING:
+    launch = _launch(behaviour)
+    if launch is None:
+        return
+    way = 0.0 if launch.forward > 0.0 else 180.0  # [deg] who takes off backward stands so
+    if math.cos(math.radians(behaviour.heading - way)) < ROUNDING:
         raise InputError(
             f"behaviour.heading={behaviour.heading:g}: never comes over the edge of "
             f"terrain={ground.name}, which is towards +x; give less than 90 to either side of "
-            f"{usual:g}"
+            f"{way:g}"
         )
+
+
+def _launch(behaviour: StagedSettings) -> Launch | None:
+    """Its last take-off that goes anywhere."""
+    aims = [task.aim for stage in behaviour.stages for task in stage.tasks.values()]
+    return next((a for a in reversed(aims) if isinstance(a, Launch) and a.forward), None)
 
 
 def _require_straight(
