@@ -167,3 +167,9 @@ def test_a_claim_is_checked(wrong):
 def test_yes_is_no_1(wanted, runs):
     table = pd.DataFrame({"x": pd.Series([True, 1.0, False, 0, None], dtype=object)})
     assert picked(table, {"x": wanted}).index.tolist() == runs
+
+
+def test_where_no_run_is_picked_columns_stay():
+    table = pd.DataFrame({"x": [1.0, 2.0], "y": [1.0, 1.0], "success": [True, True]})
+    found = picked(table, {"x": 9, "y": 1})
+    assert (len(found), list(found)) == (0, ["x", "y", "success"])

@@ -368,7 +368,7 @@ def test_a_long_reason_ends_where_the_page_does(log, tmp_path):
 
 
 def test_rates_are_told_along_the_way(log, tmp_path):
-    """As they are drawn: of who dives backward, along -x, forward is no x."""
+    """As they are drawn: forward is x only for a heading of 0."""
     plot(log, tmp_path / "plot.svg")
     told = words(tmp_path / "plot.svg")
     assert {"dL/dt, forward", "dL/dt, left", "dH/dt, left (in-plane)", "dH/dt, up"} <= {*told}

@@ -19,7 +19,8 @@ def interruptible() -> Iterator[None]:
 
     What a signal raises would be lost where nobody can catch it, as while an object is deleted, and
     while a module in C is imported: MuJoCo, for one, makes another error of it, or none. There it
-    is raised a little later. An alarm of whoever calls the command stays his until then.
+    is raised a little later, or at the end. An alarm of whoever calls the command stays his until
+    then.
     """
     postponed = False
 

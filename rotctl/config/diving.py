@@ -18,10 +18,10 @@ ROUNDING = 1e-9  # [-] of a cosine
 
 
 def require_dive(config: Config, known: Model) -> None:
-    """See that a dive is one; nothing is asked of what is none.
+    """See that a dive comes over the edge, and that its straight pose is in reach.
 
     Raises:
-        InputError: it never comes over the edge, or its straight pose is none of the body's.
+        InputError: it never comes over the edge, or its straight pose is out of a joint's range.
     """
     _require_straight(config.behaviour, config.criteria, known)
     behaviour, ground = config.behaviour, config.terrain
@@ -32,7 +32,9 @@ def require_dive(config: Config, known: Model) -> None:
     launch = _launch(behaviour)
     if launch is None:
         return
-    way = 0.0 if launch.forward > 0.0 else 180.0  # [deg] who takes off backward stands so
+    way = (
+        0.0 if launch.forward > 0.0 else 180.0
+    )  # [deg] who takes off backward has its back to the edge
     if math.cos(math.radians(behaviour.heading - way)) < ROUNDING:
         raise InputError(
             f"behaviour.heading={behaviour.heading:g}: never comes over the edge of "

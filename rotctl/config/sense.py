@@ -36,8 +36,8 @@ def require_sense(config: Config, known: Model) -> None:
 
     Raises:
         InputError: a finish comes too late, the ground may be drawn as none can be, a joint is to
-            begin where it cannot be, a dive goes nowhere, or what is said of a contact, a pull or a
-            halt acts on nothing.
+            begin where it cannot be, a dive never comes over the edge or is to enter in a pose out
+            of reach, or what is said of a contact, a pull or a halt acts on nothing.
     """
     _require_ground(config)
     if not isinstance(config.physics, LockstepPhysics):

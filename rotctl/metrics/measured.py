@@ -39,7 +39,8 @@ def picked(table: "pd.DataFrame", where: Mapping[str, Any]) -> "pd.DataFrame":
         column = f"config.{key}" if f"config.{key}" in table else key
         if column not in table:
             return table.iloc[:0]
-        table = table[[same(found, value) for found in table[column].tolist()]]
+        found = table[column].tolist()
+        table = table.iloc[[row for row, its in enumerate(found) if same(its, value)]]
     return table
 
 

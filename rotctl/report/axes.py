@@ -68,7 +68,7 @@ def rate(axes: Any, time: Array, rates: Rates, axis: int) -> None:
         spared = 3.0 if label == "realised" else 0.5  # [%] at each end
         ends.append(np.percentile(finite, [spared, 100.0 - spared]) if len(finite) else np.zeros(2))
     low, high = float(np.min(ends)), float(np.max(ends))
-    room = max(0.1 * (high - low), 0.1)  # less is none, and would be told as 1e-9 over the title
+    room = max(0.1 * (high - low), 0.1)  # [N or N m] at least: a rate of 0 has none
     axes.set_ylim(low - room, high + room)
 
 

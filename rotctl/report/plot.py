@@ -146,7 +146,8 @@ def heading(figure: Any, log: RunLog, top_of: float = SIZE[1]) -> None:
     # parse_math: a stranger's dollar signs are no formulas.
     figure.text(0.1, first, top.name, size=13, weight="bold", parse_math=False)
     figure.text(0.935, first, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
-    verdict = figure.text(0.1, second, top.verdict, color=colour, weight="bold", parse_math=False)
-    verdict.set_size(9)
+    verdict = figure.text(
+        0.1, second, top.verdict, size=9, color=colour, weight="bold", parse_math=False
+    )
     room = (0.935 - 0.1) * figure.bbox.width
     verdict.set_size(9 * min(1.0, room / verdict.get_window_extent().width))

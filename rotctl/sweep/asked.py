@@ -1,6 +1,7 @@
 """The runs that a command line asks for, and whose fault it is where it asks for none."""
 
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager, nullcontext
 
 from rotctl.errors import InputError
 from rotctl.results import experiments
@@ -9,20 +10,23 @@ from rotctl.sweep.points import Point, points
 
 
 def asked(
-    overrides: list[str], watched: Callable[[Iterable[Point]], Iterable[Point]] = iter
+    overrides: list[str],
+    watched: Callable[[Iterable[Point]], AbstractContextManager[Iterable[Point]]] = nullcontext,
 ) -> list[Planned]:
     """The runs of a command line's own grid, or of its experiment's.
 
     Args:
-        watched: hands the points on as they are made.
+        overrides: as they are typed.
+        watched: hands the points on as they are made, and is closed when that is over.
 
     Raises:
-        InputError: a point makes no run; in one line, which names the experiment if it is that
-            of its own grid.
+        InputError: a point makes no run; the line names the experiment where its own grid is
+            at fault.
     """
     grids = experiments.matrix(overrides)
     try:
-        return planned(watched(points(grids)))
+        with watched(points(grids)) as seen:
+            return planned(seen)
     except InputError as error:
         name = experiments.named(overrides)
         if not name or (len(overrides) > 1 and str(error) != _own_fault(name)):

@@ -95,7 +95,7 @@ def serve(pipe: Connection, inherited: set[int]) -> None:
             ends of pipes, which would not end with it as long as a copy is open.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the driver decides
-    for number in (signal.SIGTERM, signal.SIGALRM):  # not as a fork has them of the driver
+    for number in (signal.SIGTERM, signal.SIGALRM):  # a fork has the driver's handlers
         signal.signal(number, signal.SIG_DFL)
     _let_go(inherited)
     gc.freeze()  # what the driver has made stays: to look at it would copy its memory

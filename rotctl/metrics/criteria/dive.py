@@ -142,7 +142,7 @@ def _bent(log: Arrays, criteria: DiveCriteria) -> list[float]:
     names = [name.decode("utf-8", "replace") for name in np.asarray(log["model/joint"]).tolist()]
     angles = floats(log, "trajectory/qpos")[:, 7 : 7 + len(names)]
     straight = dict(criteria.straight)
-    for axis in "yxz":  # what a chest would bend that is not there, the waist bends beside its own
+    for axis in "yxz":  # as in poses, the waist bends by what a missing chest would
         if f"chest_{axis}" in straight.keys() - set(names):
             waist = f"waist_{axis}"
             straight[waist] = straight.get(waist, 0.0) + straight.pop(f"chest_{axis}")
