@@ -32,9 +32,7 @@ def require_dive(config: Config, known: Model) -> None:
     launch = _launch(behaviour)
     if launch is None:
         return
-    way = (
-        0.0 if launch.forward > 0.0 else 180.0
-    )  # [deg] who takes off backward has its back to the edge
+    way = 0.0 if launch.forward > 0.0 else 180.0  # [deg] backward it has its back to the edge
     if math.cos(math.radians(behaviour.heading - way)) < ROUNDING:
         raise InputError(
             f"behaviour.heading={behaviour.heading:g}: never comes over the edge of "

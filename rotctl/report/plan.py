@@ -10,7 +10,7 @@ from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import floats, nearest_places, turns
 from rotctl.report import axes as draw
 from rotctl.report.moments import turns_done
-from rotctl.report.plot import heading, write
+from rotctl.report.plot import LEFT, RIGHT, heading, write
 
 SIZE = (6.4, 6.0)  # [inch]
 ACROSS = 0.5  # [m] of the line that shows how the trunk lies; shoulders are so wide
@@ -26,7 +26,7 @@ def plan(log: RunLog, out: Path, start: float | None = None, end: float | None =
 def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     heading(figure, log, SIZE[1])
     axes = figure.add_subplot(
-        figure.add_gridspec(1, 1, left=0.1, right=0.935, top=0.88, bottom=0.09)[0]
+        figure.add_gridspec(1, 1, left=LEFT, right=RIGHT, top=0.88, bottom=0.09)[0]
     )
     place, time = floats(log, "trajectory/com")[rows, :2], log["trajectory/time"][rows]
     way = nearest_places(log)[rows, :2] if turns(log) else place

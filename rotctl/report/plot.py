@@ -17,6 +17,7 @@ from rotctl.report.title import title
 
 FORMATS = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
 SIZE = (8.27, 11.69)  # [inch] A4
+LEFT, RIGHT = 0.1, 0.935  # of the page's width, where words and plots begin and end
 DOTS = 200  # per inch, in PNG
 _STYLE: dict[Any, Any] = {
     "font.size": 7.5,
@@ -100,7 +101,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
     pull = max(character.weight(model), 1.0)
     heading(figure, log)
     grid = figure.add_gridspec(
-        8, 6, left=0.1, right=0.935, top=0.922, bottom=0.045, hspace=0.7, wspace=1.3,
+        8, 6, left=LEFT, right=RIGHT, top=0.922, bottom=0.045, hspace=0.7, wspace=1.3,
         height_ratios=[1, 1, 1, 1, 0.75, 0.8, 1.5, 0.9],
     )  # fmt: skip
 
@@ -125,7 +126,7 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
         draw.rate(axes(2, third, f"dL/dt, {axis}", "N" if i == 0 else ""), run.time, linear, i)
         draw.rate(axes(3, third, f"dH/dt, {name}", "N m" if i == 0 else ""), run.time, angular, i)
         if i == 1:
-            draw.legend(figure.axes[-2], right=1.36)
+            draw.legend(figure.axes[-2], right=1.38)
     draw.blend(axes(4, left, "Blend \u03b3", "1"), run)
     draw.count(axes(4, right, "Contacts", "1"), run)
     draw.ground_force(axes(5, left, "Ground force", "body weights"), run, pull)
@@ -144,10 +145,10 @@ def heading(figure: Any, log: RunLog, top_of: float = SIZE[1]) -> None:
     first, second = (1.0 - (1.0 - y) * SIZE[1] / top_of for y in (0.968, 0.950))
     colour = {True: draw.GOOD, False: draw.BAD, None: draw.GREY}[top.success]
     # parse_math: a stranger's dollar signs are no formulas.
-    figure.text(0.1, first, top.name, size=13, weight="bold", parse_math=False)
-    figure.text(0.935, first, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
+    figure.text(LEFT, first, top.name, size=13, weight="bold", parse_math=False)
+    figure.text(RIGHT, first, top.about, size=8, color=draw.GREY, ha="right", parse_math=False)
     verdict = figure.text(
-        0.1, second, top.verdict, size=9, color=colour, weight="bold", parse_math=False
+        LEFT, second, top.verdict, size=9, color=colour, weight="bold", parse_math=False
     )
-    room = (0.935 - 0.1) * figure.bbox.width
+    room = (RIGHT - LEFT) * figure.bbox.width
     verdict.set_size(9 * min(1.0, room / verdict.get_window_extent().width))
