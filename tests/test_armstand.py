@@ -9,6 +9,7 @@ from flights import HEAD_FIRST, flier, fly
 from rotctl.config.loading import load
 from rotctl.errors import InputError
 from rotctl.metrics.criteria import dive
+from rotctl.metrics.criteria.platform import clearance, stood
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 
@@ -55,8 +56,8 @@ def test_who_is_not_held_long_enough_is_told_so(forward):
 def test_hands_that_pushed_off_do_not_count_until_the_body_is_below_the_platform(forward):
     _, log = forward
     row = dive.entry(log)
-    assert dive._clearance(log, row, 1.0, dive._stood) < 0.15
-    assert dive._clearance(log, row, 1.0, dive._stood, hands=True) > 0.3
+    assert clearance(log, row, 1.0, stood) < 0.15
+    assert clearance(log, row, 1.0, stood, hands=True) > 0.3
 
 
 @pytest.mark.parametrize(("target", "height"), [(-360, 5), (-720, 10)])

@@ -10,6 +10,7 @@ import pytest
 from rotctl.config.fit import require_fit
 from rotctl.config.loading import load
 from rotctl.metrics.criteria import dive
+from rotctl.metrics.criteria.platform import touched
 from rotctl.runs.run import in_memory
 from rotctl.runs.scenario import build
 from rotctl.simulation.episode import Episode
@@ -66,29 +67,52 @@ def test_the_entry_is_when_and_how_the_body_is_there(back):
     assert found.entry_time == pytest.approx(row * PERIOD)
 
 
-def test_nothing_of_it_touches_the_platform_once_it_has_left(back):
-    _, log = back
-    first, last = dive.longest_flight(log)
-    assert last > dive.entry(log)
-    assert dive._clearance(log, dive.entry(log), -1.0, dive._stood) > 0.3
-    assert first < dive.entry(log)
+def test_all_of_it_stays_clear_of_the_platform_that_it_stands_at_the_edge_of():
+    """By MuJoCo's distances of its limbs from the platform, from 5 m, where it is nearest."""
+    scenario = build(
+        load(["behaviour=dive_backward", "terrain.height=5", "seed=2000", "duration=4"])
+    )
+    log, mj = in_memory(scenario)[0].arrays(), scenario.model.mj
+    first, row = dive.longest_flight(log)[0], dive.entry(log)
+    top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
+    limbs = [g for g in range(mj.ngeom) if mj.geom_bodyid[g] and mj.geom_contype[g]]
+    edge = mj.geom("platform").id
+    near = min(
+        mujoco.mj_geomDistance(mj, placed(scenario, log, each), limb, edge, 5.0, None)
+        for each in range(top, row, 4)
+        for limb in limbs
+    )
+    assert near > 0.15
+    assert not touched(log, row)
+
+
+def test_who_touches_the_platform_on_the_way_down_is_told_so(back):
+    """And not who still has the feet at the edge on the way up."""
+    scenario, log = back
+    first, row = dive.longest_flight(log)[0], dive.entry(log)
+    top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
+    for at, reason in ((top - 1, ""), (top + 9, "touched the platform on its way down")):
+        bodies = log["contacts/body"].copy()
+        bodies[at, 0] = 1
+        grazed = {**log, "contacts/body": bodies}
+        assert dive.judge(grazed, scenario.config.criteria, -540.0, PERIOD)[1] == reason
 
 
 def test_the_clearances_are_how_near_it_comes_to_where_it_last_stood_and_to_the_edge(back):
     """And to the edge; by kinematics of the logged states, from the highest one on, along x."""
     scenario, log = back
     first, row = dive.longest_flight(log)[0], dive.entry(log)
-    stood = log["contacts/position"][first - 1][log["contacts/body"][first - 1] >= 0]
+    last = log["contacts/position"][first - 1][log["contacts/body"][first - 1] >= 0]
     top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
     found = dive.measure(log, scenario.config.criteria, -540.0, PERIOD)
     for measured, (x, z), within in (
-        (found.clearance, (stood[:, 0].max(), stood[0, 2]), 1e-3),
+        (found.clearance, (last[:, 0].max(), last[0, 2]), 1e-3),
         (found.edge_clearance, (scenario.config.terrain.edge, 0.0), 0.01),
     ):
         places = [place for each in range(top, row) for place in ends(scenario, log, each)]
         near = min(np.hypot(max(p[0] - x, 0.0), max(p[2] - z, 0.0)) for p in places)
         assert measured == pytest.approx(near, abs=within)
-    assert found.edge_clearance < found.clearance - 0.2
+    assert found.edge_clearance < found.clearance - 0.1
 
 
 def test_who_never_enters_has_no_numbers(back):
@@ -106,8 +130,10 @@ def test_each_limit_has_its_reason(back):
         ({"angle": 1e-6}, "off the vertical"),
         ({"bent": 1e-6}, "with a joint bent"),
         ({"clearance": 5.0}, "of where it last stood"),
+        ({"edge": 5.0}, "of the platform's edge"),
     ):
         assert words in dive.judge(log, replace(strict, **limits), -540.0, PERIOD)[1]
+    assert dive.judge(log, replace(strict, edge=None), -540.0, PERIOD)[1] == ""  # an older run
     assert "of 540" in dive.judge(log, strict, 540.0, PERIOD)[1]
 
 

@@ -1,0 +1,85 @@
+"""How near a dive comes to the platform that it leaves, on its way down from there."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from rotctl.metrics.columns import Arrays, floats, frame
+from rotctl.metrics.criteria.flip import longest_flight
+
+PLATFORM = 0.0  # [m] height of its top
+Corner = Callable[[Arrays, int, np.ndarray], tuple[float, float]]
+
+
+def middle(log: Arrays, names: tuple[str, ...]) -> np.ndarray:
+    """Mean place of watched points (steps, 3), world [m]."""
+    tasks = [name.decode("utf-8", "replace") for name in np.asarray(log["model/task"]).tolist()]
+    missing = np.asarray(log["command/error"])[:, [tasks.index(name) for name in names]]
+    along = frame(log)
+    away = sum(missing[..., i : i + 1] * along[i] for i in range(3))
+    return np.asarray(floats(log, "trajectory/com") - np.mean(away, axis=1))
+
+
+def _falling(log: Arrays, row: int, hands: bool) -> slice:
+    """The rows of the way down to the entry in `row`.
+
+    From the highest point of the flight on: before it the feet are still at the edge. Or, from the
+    `hands`, from where the centre of mass is below the platform: they leave it last.
+    """
+    first, _ = longest_flight(log)
+    heights = floats(log, "trajectory/com")[first:row, 2]
+    return slice(first + int(np.argmax(heights < PLATFORM if hands else heights)), row)
+
+
+def touched(log: Arrays, row: int, hands: bool = False) -> bool:
+    """Whether anything touches it on the way down; nothing but the platform is there."""
+    way = _falling(log, row, hands)
+    return bool((np.asarray(log["contacts/body"])[way] >= 0).any())
+
+
+def clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool = False) -> float:
+    """How near the watched points come to a corner of the platform, or behind it [m].
+
+    Who turns backward (`sense` -1) goes backward. Who was spawned in the air stood nowhere: NaN,
+    and nothing is asked of it.
+    """
+    first, _ = longest_flight(log)
+    if not first:
+        return math.nan
+    way = _falling(log, row, hands)
+    ahead, up = sense * frame(log)[0], frame(log)[2]
+    end, floor = corner(log, first, ahead)
+    if math.isnan(end):
+        return math.nan
+    near = math.inf
+    for names in (("hand_l", "hand_r"), ("foot_l", "foot_r"), ("head",), ("pelvis",)):
+        place = middle(log, names)[way]
+        beyond = np.maximum((place * ahead).sum(axis=1) - end, 0.0)
+        over = np.maximum((place * up).sum(axis=1) - floor, 0.0)
+        near = min(near, float(np.sqrt(beyond**2 + over**2).min()))
+    return near
+
+
+def stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
+    """The foremost place that it last stood on: how far ahead, and its height in the world [m].
+
+    Args:
+        first: row of the flight.
+        ahead: (3,) the way that it goes.
+    """
+    places = np.asarray(log["contacts/position"])[first - 1]
+    used = np.asarray(log["contacts/body"])[first - 1] >= 0
+    return max(float((p * ahead).sum()) for p in places[used]), float(places[used][0, 2])
+
+
+def edge(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
+    """Where the ground below the centre of mass falls away, as `stood`; NaN if it never does.
+
+    Half-way between the two steps around it, which is within half a step's way of it.
+    """
+    falls = np.flatnonzero(np.diff(floats(log, "trajectory/ground_height")) < 0.0)
+    if not len(falls):
+        return math.nan, PLATFORM
+    com = floats(log, "trajectory/com")[falls[0] : falls[0] + 2]
+    return float((com * ahead).sum(axis=1).mean()), PLATFORM
