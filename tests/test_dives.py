@@ -68,10 +68,9 @@ def test_the_entry_is_when_and_how_the_body_is_there(back):
 
 
 def test_all_of_it_stays_clear_of_the_platform_that_it_stands_at_the_edge_of():
-    """By MuJoCo's distances of its limbs from the platform, from 5 m, where it is nearest."""
-    scenario = build(
-        load(["behaviour=dive_backward", "terrain.height=5", "seed=2000", "duration=4"])
-    )
+    """By MuJoCo's distances; with the edge of `terrain=pool` the head passes at 0.15 m."""
+    start = ["terrain.height=5", "plant=varied", "seed=2000", "duration=3.5"]
+    scenario = build(load(["behaviour=dive_backward", *start]))
     log, mj = in_memory(scenario)[0].arrays(), scenario.model.mj
     first, row = dive.longest_flight(log)[0], dive.entry(log)
     top = first + int(np.argmax(log["trajectory/com"][first:row, 2]))
@@ -82,7 +81,7 @@ def test_all_of_it_stays_clear_of_the_platform_that_it_stands_at_the_edge_of():
         for each in range(top, row, 4)
         for limb in limbs
     )
-    assert near > 0.15
+    assert near > 0.3
     assert not touched(log, row)
 
 
