@@ -94,7 +94,7 @@ def test_the_command_leaves_logs_and_rows_as_they_are(made, capsys, monkeypatch)
         (["--metric", "a=1", "--metric", "a =2"], "--metric a: given twice, 1 and 2; rename one"),
         (["--metrics", "no.yaml"], "no.yaml: no such file"),
         (["criteria=none"], 'criteria="none": no such choice; valid: '),
-        (["criteria.no=1"], "no run can be judged: unknown key 'criteria.no'; valid keys under"),
+        (["criteria.no=1"], "no run can be judged: criteria=rolling: unknown key 'criteria.no'; valid "),
     ],
 )
 def test_what_it_does_not_take_is_one_line(made, capsys, monkeypatch, overrides, said):
@@ -114,6 +114,20 @@ def test_runs_that_cannot_be_judged_are_told(tmp_path, capsys, monkeypatch):
     stderr = capsys.readouterr().err
     assert "no run can be judged: " in stderr
     assert "criteria=standing does not judge behaviour=forward_roll_1" in stderr
+
+
+def test_of_runs_of_many_kinds_the_criteria_of_each_are_told(tmp_path, capsys, monkeypatch):
+    swept(tmp_path, "behaviour=forward_roll_1,stand", "duration=1", "seed=2000")
+    without_processes(monkeypatch)
+    rolling, standing = (
+        f"criteria={name}: unknown key 'criteria.tilt'; valid keys under criteria: "
+        f"{', '.join(load([f'criteria={name}', *more]).criteria.__dict__)}"
+        for name, *more in (("rolling",), ("standing", "behaviour=stand"))
+    )
+    assert main(["judge", str(tmp_path), "criteria.tilt=3"]) == 2
+    said = f"rotctl: {tmp_path}: no run can be judged: "
+    first, second = (f"{said}{a}; {b}\n" for a, b in ((rolling, standing), (standing, rolling)))
+    assert capsys.readouterr().err in (first, second)  # by their ids
 
 
 def test_a_sweep_with_other_criteria_judges_what_is_there(tmp_path):
@@ -220,7 +234,7 @@ def test_a_metric_that_some_runs_lack_is_told(tmp_path, capsys, monkeypatch):
     swept(tmp_path, "seed=1", "duration=1,2")
     without_processes(monkeypatch)
     assert main(["judge", str(tmp_path), "--metric", "late=com[100, 2]"]) == 0
-    assert "1 runs: metric late: index 100 is out of bounds" in capsys.readouterr().err
+    assert "1 run: metric late: index 100 is out of bounds" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["- a", "top: 3", "top: [max(com)]", "x"])

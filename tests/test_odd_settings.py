@@ -19,6 +19,7 @@ STAND = ["behaviour=stand", "duration=1"]
 LAWS = ", ".join(
     repr(get_args(get_type_hints(law)["law"])[0]) for law in get_args(get_args(Aim)[0])
 )
+CHAIN = ["behaviour=chain", "start=poised"]
 PUSHED = [*STAND, "disturbance=push"]
 BODIES = (
     "pelvis, waist, chest, head, upper_arm_l, forearm_l, upper_arm_r, forearm_r, thigh_l, shin_l, "
@@ -224,6 +225,14 @@ def complaint(chosen, changes):
         (["behaviour=dive_armstand_backward"], {"behaviour.heading": 0.0},
          "behaviour.heading=0: never comes over the edge of terrain=pool_hands, which is towards "
          "+x; give less than 90 to either side of 180"),
+        ([*CHAIN, "behaviour.parts=['dive_forward behaviour.heading=120']", "terrain=pool"], {},
+         "behaviour.parts: 'dive_forward behaviour.heading=120': behaviour.heading=120: never comes "
+         "over the edge of terrain=pool, which is towards +x; give less than 90 to either side of "
+         "0"),
+        ([*CHAIN, "behaviour.parts=[dive_forward]", "terrain=pool"],
+         {"behaviour.parts.0.behaviour.heading": 90.0, "behaviour.parts.0.said": ""},
+         "behaviour.parts.0.behaviour.heading=90: never comes over the edge of terrain=pool, which "
+         "is towards +x; give less than 90 to either side of 0"),
         (STAND, {"start.postures.left.pose.knee": 90.0},
          "start.postures.left.pose.knee=90: this joint goes from -0.02 to 2.7 rad"),
         (["behaviour=flight"], {"start.aloft.pose.elbow": -1.0},

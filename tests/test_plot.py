@@ -135,6 +135,17 @@ def test_iterations_have_an_axis_where_the_solver_tells_them(log, tmp_path):
     assert {"iterations", "iterations (right)"} <= set(words(tmp_path / "some.svg"))
 
 
+def test_a_blend_is_shown_where_there_are_two_poses_to_blend(log, tmp_path):
+    flat = changed(log, tmp_path, {"trajectory/blend": np.full(log.steps, 0.5)})
+    plot(flat, tmp_path / "flat.svg")
+    assert not any("pose" in word or "Blend" in word for word in words(tmp_path / "flat.svg"))
+    assert "Contacts" in words(tmp_path / "flat.svg")
+    blends, still = signals(log, ALL), signals(flat, ALL)
+    pairs = [(blends, None), (still, None), (still, blends), (blends, still)]
+    shown = [any("Blend" in panel["title"] for panel in panels(*pair)) for pair in pairs]
+    assert shown == [True, False, True, True]
+
+
 def test_joints_are_grouped_over_sides_and_axes(log):
     assert [joint_group(name) for name in ("hip_y_l", "knee_r", "waist_z")] == [
         "hip",

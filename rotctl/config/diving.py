@@ -24,8 +24,14 @@ def require_dive(config: Config, known: Model) -> None:
         InputError: it never comes over the edge, or its straight pose is out of a joint's range.
     """
     _require_straight(config.behaviour, config.criteria, known)
-    behaviour, ground = config.behaviour, config.terrain
-    if not isinstance(config.criteria, DiveCriteria) or not isinstance(ground, Pool):
+    behaviour, criteria, key = config.behaviour, config.criteria, "behaviour.heading"
+    if isinstance(behaviour, ChainSettings) and isinstance(criteria, ChainCriteria):
+        part = behaviour.parts[0]  # a later one heads where the feet point by then
+        between = ": " if part.said else "."
+        behaviour, criteria = part.behaviour, criteria.parts[0]
+        key = f"{part.place(0)}{between}{key}"
+    ground = config.terrain
+    if not isinstance(criteria, DiveCriteria) or not isinstance(ground, Pool):
         return
     if not isinstance(behaviour, StagedSettings) or config.start.aloft:  # it is over it already
         return
@@ -35,7 +41,7 @@ def require_dive(config: Config, known: Model) -> None:
     way = 0.0 if launch.forward > 0.0 else 180.0  # [deg] backward it has its back to the edge
     if math.cos(math.radians(behaviour.heading - way)) < ROUNDING:
         raise InputError(
-            f"behaviour.heading={behaviour.heading:g}: never comes over the edge of "
+            f"{key}={behaviour.heading:g}: never comes over the edge of "
             f"terrain={ground.name}, which is towards +x; give less than 90 to either side of "
             f"{way:g}"
         )

@@ -36,7 +36,7 @@ class Line:
 
 
 def panels(run: Signals, other: Signals | None) -> list[Panel]:
-    """The plots of a run, with another one laid over."""
+    """The plots of a run, with another one laid over; none of a blend that neither has."""
     time, ends = run.time, run.commanded_time
     spin, speed = (np.full(len(ends), each) for each in (run.commanded_spin, run.commanded_speed))
     turns = run.commanded_spin * (ends - ends[:1])
@@ -48,6 +48,14 @@ def panels(run: Signals, other: Signals | None) -> list[Panel]:
         shown = array if column is None else array[:, column]
         return [Line("compared", "ghost", other.time, shown, steps)]
 
+    blends = run.blends or (other is not None and other.blends)
+    blend = _panel(
+        "Blend \u03b3",
+        "1",
+        Line("0 pose b, 1 pose a", "achieved", time, run.blend),
+        *over("blend"),
+        limits=(-0.05, 1.05),
+    )
     return [
         _panel(
             "In-plane angular velocity",
@@ -72,13 +80,7 @@ def panels(run: Signals, other: Signals | None) -> list[Panel]:
             Line("commanded forward", "commanded", ends, speed),
             *over("velocity", 0),
         ),
-        _panel(
-            "Blend \u03b3",
-            "1",
-            Line("0 pose b, 1 pose a", "achieved", time, run.blend),
-            *over("blend"),
-            limits=(-0.05, 1.05),
-        ),
+        *([blend] if blends else []),
         _panel(
             "Contacts",
             "1",

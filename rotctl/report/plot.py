@@ -127,8 +127,9 @@ def _draw(figure: Any, log: RunLog, rows: slice) -> None:
         draw.rate(axes(3, third, f"dH/dt, {name}", "N m" if i == 0 else ""), run.time, angular, i)
         if i == 1:
             draw.legend(figure.axes[-2], right=1.38)
-    draw.blend(axes(4, left, "Blend \u03b3", "1"), run)
-    draw.count(axes(4, right, "Contacts", "1"), run)
+    if run.blends:
+        draw.blend(axes(4, left, "Blend \u03b3", "1"), run)
+    draw.count(axes(4, right if run.blends else slice(0, 6), "Contacts", "1"), run)
     draw.ground_force(axes(5, left, "Ground force", "body weights"), run, pull)
     draw.height(axes(5, right, "Centre of mass above the ground", "m"), run)
     draw.torques(axes(6, left, "Torque as a fraction of its limit", ""), log, rows, run.time)

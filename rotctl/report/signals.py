@@ -9,6 +9,7 @@ from rotctl.log import RunLog
 from rotctl.maths.rotations import Array
 from rotctl.metrics.columns import along_frame, in_frame
 from rotctl.metrics.criteria.finish import begins
+from rotctl.report.moments import STEADY
 from rotctl.report.title import plain
 
 TURN = 2.0 * math.pi  # [rad]
@@ -24,6 +25,7 @@ class Signals:
         turns: (n, 3) angular excursion; in-plane since the start of the run [rev].
         velocity: (n, 3) of the centre of mass [m/s].
         blend: (n,).
+        blends: whether it ever changes in the run; of who has no two poses it stands still.
         height: (n,) of the centre of mass above the ground [m]; NaN where the log does not tell.
         force: (n,) magnitude of the ground's force, mean over a control step [N].
         force_peak: (n,) its largest in a physics step [N]; NaN where the log does not tell.
@@ -39,6 +41,7 @@ class Signals:
     turns: Array
     velocity: Array
     blend: Array
+    blends: bool
     height: Array
     force: Array
     force_peak: Array
@@ -80,6 +83,7 @@ def signals(log: RunLog, rows: slice) -> Signals:
         turns=turns[rows],
         velocity=in_frame(log, "trajectory/com_velocity")[rows],
         blend=log["trajectory/blend"][rows],
+        blends=bool(np.ptp(log["trajectory/blend"]) >= STEADY),
         height=unknown if height is None else height[rows],
         force=np.linalg.norm(_ground_force(log, rows), axis=1),
         force_peak=log["contacts/ground_force_peak"][rows] if newer else unknown,

@@ -37,5 +37,5 @@ def _stages(behaviour: Any) -> list[str]:
     finish = find(behaviour, ("finish", "stages"))
     staged = find(behaviour, ("stages",)) if finish is NOTHING else finish
     names = [find(one, ("name",)) for one in staged] if isinstance(staged, list) else []
-    shown = [plain(name)[:LONGEST] if isinstance(name, str) else "" for name in names]
+    shown = [plain(name, LONGEST) if isinstance(name, str) else "" for name in names]
     return shown if finish is NOTHING else ["roll", *shown]

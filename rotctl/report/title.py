@@ -59,4 +59,6 @@ def verdict(outcome: dict[str, object]) -> tuple[bool | None, str]:
 
 def plain(value: object, longest: int = LONGEST) -> str:
     """A stranger's text on one printable line of so many characters at most."""
-    return "".join(c if c.isprintable() else " " for c in f"{value!s:.{longest}}")
+    text = str(value)
+    shown = text if len(text) <= longest else f"{text[: longest - 3]}..."
+    return "".join(c if c.isprintable() else " " for c in shown)

@@ -7,7 +7,7 @@ from typing import Any
 from rotctl.choices.overrides import assigned, single
 from rotctl.config.loading import composed
 from rotctl.errors import InputError
-from rotctl.settings.complaints import unknown_key
+from rotctl.settings.complaints import clip, unknown_key
 from rotctl.settings.plain import NOTHING, Way, exchanged, way
 
 
@@ -37,7 +37,8 @@ class Criteria:
         for place, value in self.changes:
             changed = exchanged(found, place, value)
             if changed is NOTHING:
-                raise InputError(unknown_key(f"criteria.{place[0]}", "criteria", list(found)))
+                unknown = unknown_key(f"criteria.{place[0]}", "criteria", list(found))
+                raise InputError(f"criteria={clip(str(found.get('name')))}: {unknown}")
             found = changed
         return dict(found)
 

@@ -138,8 +138,9 @@ def judge(
             continue
         asked.append((run, Question(folder / run.log, config, metrics)))
     if not asked:
-        reasons = [run.reason for run in found.values() if run.reason]
-        raise InputError(f"{folder}: no run can be judged: {(reasons or ['none is done'])[0]}")
+        reasons = dict.fromkeys(run.reason for run in found.values() if run.reason)
+        said = "; ".join(reasons or ["none is done"])
+        raise InputError(f"{folder}: no run can be judged: {said}")
     before = {run.run_id: bool(run.outcome["success"]) for run, _ in asked}
     questions = [question for _, question in asked]
     complaints: Counter[str] = Counter()
@@ -156,17 +157,16 @@ def judge(
                 remarks.update(result.remarks)
             progress()
     if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
-        raise InputError(f"{folder}: no run can be judged: {found[asked[0][0].run_id].reason}")
+        reasons = dict.fromkeys(found[run.run_id].reason for run, _ in asked)
+        raise InputError(f"{folder}: no run can be judged: {'; '.join(reasons)}")
     for complaint, count in complaints.items():
         if count == len(asked):
             raise InputError(complaint)
-        notes.append(f"{count} runs: {complaint}")
-    notes += [f"{count} runs: {remark}" for remark, count in remarks.items()]
+        notes.append(f"{_many(count)}: {complaint}")
+    notes += [f"{_many(count)}: {remark}" for remark, count in remarks.items()]
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
-    notes += [
-        f"{count} run{'s' * (count > 1)} not judged: {reason}" for reason, count in untold.items()
-    ]
+    notes += [f"{_many(count)} not judged: {reason}" for reason, count in untold.items()]
     table = tabulated(list(found.values()), notes)
     table.rows[BEFORE] = table.rows["run_id"].map(before)
     return Judged(
@@ -174,6 +174,10 @@ def judge(
         lost=sum(before[name] and not success for name, success in after.items()),
         won=sum(success and not before[name] for name, success in after.items()),
     )
+
+
+def _many(runs: int) -> str:
+    return f"{runs} run{'s' * (runs != 1)}"
 
 
 def _without(run: StoredRun, reason: str) -> StoredRun:
