@@ -386,6 +386,18 @@ def test_a_reader_that_has_seen_enough_is_no_error():
     assert process.wait(timeout=PATIENCE) == 0
 
 
+def test_nor_does_he_make_a_good_end_of_a_bad_one(made, tmp_path):
+    log = RunLog.open(made[2])
+    other = changed(log, tmp_path, {"trajectory/ctrl": 2.0 * log["trajectory/ctrl"]})
+    usual = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
+    process = subprocess.Popen(
+        command("verify", other.path), stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=usual
+    )
+    process.stdout.close()
+    assert process.stderr.read() == b""
+    assert process.wait(timeout=PATIENCE) == 1
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")
 def test_a_full_stdout_is_one_line():
     with open("/dev/full", "w") as full:

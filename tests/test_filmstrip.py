@@ -185,7 +185,10 @@ def test_the_title_shows_success_and_failure(log, picture, tmp_path, outcome, co
             {"success": False, "failure_reason": "stalled for 1.60 s from t = 1.38 s"},
             "FAILED: stalled for 1.60 s from t = 1.38 s",
         ),
-        ({"success": False, "failure_reason": "a\nb" + "c" * 999}, "FAILED: a b" + "c" * 134 + "..."),
+        (
+            {"success": False, "failure_reason": "a\nb" + "c" * 999},
+            "FAILED: a b" + "c" * 134 + "...",
+        ),
         ({"success": False, "failure_reason": "c" * 140}, "FAILED: " + "c" * 140),
         ({}, "outcome unknown"),
     ],

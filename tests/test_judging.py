@@ -94,7 +94,10 @@ def test_the_command_leaves_logs_and_rows_as_they_are(made, capsys, monkeypatch)
         (["--metric", "a=1", "--metric", "a =2"], "--metric a: given twice, 1 and 2; rename one"),
         (["--metrics", "no.yaml"], "no.yaml: no such file"),
         (["criteria=none"], 'criteria="none": no such choice; valid: '),
-        (["criteria.no=1"], "no run can be judged: criteria=rolling: unknown key 'criteria.no'; valid "),
+        (
+            ["criteria.no=1"],
+            "no run can be judged: criteria=rolling: unknown key 'criteria.no'; valid ",
+        ),
     ],
 )
 def test_what_it_does_not_take_is_one_line(made, capsys, monkeypatch, overrides, said):

@@ -226,9 +226,9 @@ def complaint(chosen, changes):
          "behaviour.heading=0: never comes over the edge of terrain=pool_hands, which is towards "
          "+x; give less than 90 to either side of 180"),
         ([*CHAIN, "behaviour.parts=['dive_forward behaviour.heading=120']", "terrain=pool"], {},
-         "behaviour.parts: 'dive_forward behaviour.heading=120': behaviour.heading=120: never comes "
-         "over the edge of terrain=pool, which is towards +x; give less than 90 to either side of "
-         "0"),
+         "behaviour.parts: 'dive_forward behaviour.heading=120': behaviour.heading=120: never "
+         "comes over the edge of terrain=pool, which is towards +x; give less than 90 to either "
+         "side of 0"),
         ([*CHAIN, "behaviour.parts=[dive_forward]", "terrain=pool"],
          {"behaviour.parts.0.behaviour.heading": 90.0, "behaviour.parts.0.said": ""},
          "behaviour.parts.0.behaviour.heading=90: never comes over the edge of terrain=pool, which "

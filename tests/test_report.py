@@ -640,6 +640,17 @@ def test_few_starts_are_the_whole_experiment_or_not(sweep, seeds, rest):
     assert warnings(study)[0] == f"Only 3 starts a row, so that the intervals are wide.{rest}"
 
 
+def test_one_of_something_is_no_number_of_them(tmp_path, monkeypatch):
+    monkeypatch.setattr(build, "MOST_DRAWN", 0)
+    out = swept(tmp_path / "sweeps" / "one", "seed=2000", "duration=1")
+    (out / "experiment-test.yaml").write_text(EXPERIMENT.replace("speed_mean", "revolutions"))
+    report(tmp_path / "sweeps", tmp_path / "site")
+    failed = list(Xml.parse(tmp_path / "site" / "junit.xml").getroot().iter("failure"))
+    assert failed
+    assert all(each.get("message").endswith(" measured over 1 run") for each in failed)
+    assert "> Only 1 start a row" in (tmp_path / "site" / "summary.md").read_text()
+
+
 def test_claims_that_nobody_could_test_are_named_with_the_reason(sweep, tmp_path, capsys):
     (sweep / "experiment-test.yaml").write_text(EXPERIMENT.replace("speed_mean", "sped_mean"))
     assert main(["report", str(sweep), "--out", str(tmp_path / "site")]) == 0

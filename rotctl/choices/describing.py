@@ -23,8 +23,8 @@ _NAMED_ALONE = {"tune", EXPERIMENTS}  # by no value of Hydra's
 def groups() -> dict[str, dict[str, str]]:
     """Config groups to their choices to a line of description each, sorted.
 
-    The line is the file's `description`, or else the comment that the file opens with; or what
-    is wrong with the file.
+    The line is the file's `description`, or else the comment that the file opens with, or its
+    title; or what is wrong with the file.
     """
     return {group: described(group) for group in group_names()}
 
@@ -53,7 +53,8 @@ def _described(path: Path) -> str:
             raise InputError(f"{wrong}; give it another name")
         data = content(path)
         text = files.text(path, documents.LARGEST, linked=True)
-        told = data.get("description") or _first_comment(text) or data.get("file", "")  # a model
+        told = data.get("description") or _first_comment(text)
+        told = told or data.get("title") or data.get("file", "")  # of an experiment; of a model
         called = data.get("name", path.stem)
         told = f"{told} (its runs say {called})" if called != path.stem else told
         return " ".join(str(told).split())

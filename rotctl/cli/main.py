@@ -70,8 +70,11 @@ def _commanded(arguments: argparse.Namespace) -> int:
         mujoco_without_opengl()  # by itself it raises where the one that is chosen does not work
     with own(arguments.config_dir):
         code = int(arguments.command(arguments))
-        if sys.stdout:  # None where the shell has closed it
-            sys.stdout.flush()
+        try:
+            if sys.stdout:  # None where the shell has closed it
+                sys.stdout.flush()
+        except BrokenPipeError:  # what was found is found, read to its end or not
+            _drop_stdout()
         return code
 
 

@@ -8,6 +8,7 @@ from typing import Any
 from rotctl.report.site import outcomes, panels, pushes
 from rotctl.report.site.grid import Grid
 from rotctl.report.site.panels import Paper
+from rotctl.report.site.words import count
 
 LIGHT = Paper("#ffffff", "#1c222c", "#5d6876", "#e3e8ed")
 DARK = Paper("#11161d", "#e8edf3", "#9aa7b6", "#28313d")
@@ -131,7 +132,7 @@ def charts(found: Grid) -> list[Chart]:
             _chart(
                 "starts",
                 "Every start: blue succeeded, orange failed, empty has no result",
-                f"Success map of {len(groups)} groups by {seeds} seeds. "
+                f"Success map of {count(len(groups), 'group')} by {seeds} seeds. "
                 f"{panels.said_of_groups(groups)}",
                 (_WIDTH, 1.0 + min(8.0, 0.27 * len(groups))),
                 lambda figure, paper: outcomes.starts(figure, runs, some, paper),

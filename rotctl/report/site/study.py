@@ -21,7 +21,7 @@ from rotctl.metrics.claims import (
 )
 from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.report.site.rows import Row, rows
-from rotctl.report.site.words import quantity
+from rotctl.report.site.words import count, quantity
 from rotctl.results.experiments import Experiment
 from rotctl.results.sweeps import Sweep
 
@@ -160,7 +160,9 @@ def _few(study: Study) -> list[str]:
     fewest, starts = min(rates, default=(FEW, 0))
     if fewest >= FEW or not study.experiment:
         return []
-    counted = f"{fewest} starts" if starts == fewest else f"{fewest} runs from {starts} seeds"
+    counted = count(fewest, "start")
+    if starts != fewest:
+        counted = f"{count(fewest, 'run')} from {count(starts, 'seed')}"
     said = f"Only {counted} a row, so that the intervals are wide."
     seeds = study.experiment.seeds
     whole = _no_more(seeds, study.sweep.table.rows["seed"].nunique())

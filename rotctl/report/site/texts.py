@@ -21,7 +21,7 @@ from rotctl.report.site.study import (
     tally,
     warnings,
 )
-from rotctl.report.site.words import claimed, expectation, outcome
+from rotctl.report.site.words import claimed, count, expectation, outcome
 from rotctl.report.title import plain
 
 COLUMNS = (
@@ -56,14 +56,14 @@ def junit_xml(found: Sequence[Line]) -> str:
     root = Xml.Element("testsuites", name="rotctl report")
     for (sweep, experiment), group in groupby(found, lambda line: line.key[:2]):
         some = list(group)
-        count = tally(some)
+        tallied = tally(some)
         suite = Xml.SubElement(
             root,
             "testsuite",
             name=plain(f"{sweep}: {experiment}"),
             tests=str(len(some)),
-            failures=str(len(some) - count[REPRODUCED] - count[NOT_TESTED]),
-            skipped=str(count[NOT_TESTED]),
+            failures=str(len(some) - tallied[REPRODUCED] - tallied[NOT_TESTED]),
+            skipped=str(tallied[NOT_TESTED]),
         )
         for line in some:
             _case(suite, line)
@@ -84,7 +84,7 @@ def _case(suite: Xml.Element, line: Line) -> None:
 def _sentence(line: Line) -> str:
     judged, claim = line.judged, line.judged.claim
     said = f"{judged.verdict}: {claimed(claim)} {expectation(claim)} expected"
-    return f"{said}, {outcome(judged)} measured over {judged.measured.runs} runs"
+    return f"{said}, {outcome(judged)} measured over {count(judged.measured.runs, 'run')}"
 
 
 def summary_md(found: Sequence[Study], notes: Sequence[str]) -> str:
