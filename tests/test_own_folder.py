@@ -351,6 +351,19 @@ def test_sweeps_are_compared(here, cli):
     assert "real_time_factor" not in said  # no two runs take the same
 
 
+def test_sweeps_over_other_values_of_a_key_are_not_the_same(here, cli):
+    for name, seeds in (("a", (2000, 2001)), ("b", (2009, 2000)), ("c", range(2003, 2008))):
+        for seed in seeds:
+            api.simulate(load([f"seed={seed}", "duration=0.1"]), name)
+
+    def told(one, other):
+        return cli("diff", one, other)[1].partition("\n\n")[0].splitlines()
+
+    assert told("a", "b") == ["config  a           b", "seed    2000, 2001  2000, 2009"]
+    assert told("b", "c")[1] == "seed    2000, 2009  5 values, 2003 to 2007"
+    assert told("c", "c") == ["config: the same"]
+
+
 def test_of_sweeps_over_several_behaviours_their_names_are_compared(here, cli):
     """Not the hundreds of keys that only some of them have; and who rolled on as a share."""
     for name, others in (("a", ("stand", "get_up")), ("b", ("stand",))):

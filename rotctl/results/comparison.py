@@ -1,7 +1,7 @@
 """Two runs or two sweeps side by side: where their configs differ, and their figures."""
 
 import json
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,7 +16,7 @@ from rotctl.results.table import tabulated
 from rotctl.settings import plain
 
 _NOT_FIGURES = ("run_id", "real_time_factor", "wall_time")
-_VARIES = "(varies)"
+FEW = 4  # values of a key that are told one by one
 NAME = ".name"  # of a choice, in its group
 _SPREAD = ("_q25", "_median", "_q75")
 
@@ -29,12 +29,19 @@ class Some(NamedTuple):
 
 
 @dataclass(frozen=True)
+class Several:
+    """The values of a key that runs of a sweep differ in, each once and in order."""
+
+    values: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
 class Side:
     """What is compared.
 
     Attributes:
         sweep: whether it is many runs.
-        config: dotted key to value; of many runs what they share, else `(varies)`.
+        config: dotted key to value; of many runs `Several` where they differ.
         figures: name to value, or to (quartile, median, quartile); `Some` where only some runs
             have it.
         mixed: groups of which its runs have several choices.
@@ -92,7 +99,7 @@ def _side(path: Path, opened: Callable[[Path], RunLog]) -> Side:
         runs = row.get(f"{name.removesuffix('_rate')}_n", row["n"])
         figures[name] = figures[name] if runs == row["n"] else Some(figures[name], runs)
     config = _flat([dict(run.config) for run in done])
-    mixed = [key for key in config if _names(key) and config[key] == _VARIES]
+    mixed = [key for key in config if _names(key) and isinstance(config[key], Several)]
     for key in mixed:
         config[key] = ", ".join(sorted({str(value_at(run.config, key)) for run in done}))
     return Side(True, config, figures, [key.removesuffix(NAME) for key in mixed])
@@ -113,14 +120,24 @@ def _without_parts(config: Mapping[str, Any], mixed: Collection[str]) -> dict[st
 
 
 def _flat(configs: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Dotted keys of configs to their values, `(varies)` where they differ."""
-    found: dict[str, Any] = {}
+    """Dotted keys of configs to their values, `Several` where they differ."""
+    found: dict[str, dict[tuple[bool, float, str], Any]] = {}
     for k, config in enumerate(configs):
         values = {plain.dotted(parts): value for parts, value in plain.leaves(config)}
         for key in found.keys() | values.keys():
-            value = values.get(key)
-            found[key] = value if not k or found.get(key) == value else _VARIES
-    return found
+            value, earlier = values.get(key), {_order(None): None} if k else {}
+            found.setdefault(key, earlier)[_order(value)] = value
+    return {key: _one_or_several(list(values.values())) for key, values in found.items()}
+
+
+def _one_or_several(values: Sequence[Any]) -> Any:
+    return values[0] if len(values) == 1 else Several(tuple(sorted(values, key=_order)))
+
+
+def _order(value: Any) -> tuple[bool, float, str]:
+    """Numbers by their size, of which 1 and 1.0 are one, and then all else."""
+    number = isinstance(value, int | float)
+    return (False, value, "") if number else (True, 0.0, repr(value))
 
 
 def _figures(outcome: Mapping[str, Any]) -> dict[str, Any]:
@@ -141,6 +158,10 @@ def _table(title: str, one: Mapping[str, Any], other: Mapping[str, Any], *names:
 def _text(value: Any) -> str:
     if isinstance(value, Some):
         return f"{_text(value.figure)} of {value.runs}"
+    if isinstance(value, Several):
+        told = [_text(each) for each in value.values]
+        few = len(told) <= FEW
+        return ", ".join(told) if few else f"{len(told)} values, {told[0]} to {told[-1]}"
     if isinstance(value, tuple):
         low, middle, high = map(_text, value)
         return middle if low == middle == high else f"{middle} [{low}, {high}]"
