@@ -14,9 +14,9 @@ from rotctl.results.table import table
 from rotctl.settings.documents import DEEPEST
 from rotctl.sweep.keep import Keep
 from rotctl.sweep.keep import read as read_keep
-from rotctl.sweep.launch import launch
-from rotctl.sweep.messages import at_the_start
-from rotctl.sweep.plan import plan, planned
+from rotctl.sweep.launch import Tally, launch
+from rotctl.sweep.messages import at_the_end, at_the_start
+from rotctl.sweep.plan import Plan, plan, planned
 from rotctl.sweep.points import points
 
 GRID = ("duration=0.5", "seed=range(0,3)")
@@ -149,6 +149,17 @@ def test_a_flipped_bit_is_told_and_its_run_made_again(harmed):
         f"{folder}/runs.jsonl: 1 line damaged, left out",
         f"1 run to do in {folder}, 2 are there already; on 1 worker",
     ]
+
+
+def test_one_run_that_is_there_is_told_as_one(tmp_path):
+    there = Plan(done={"a": {"success": True}}, other_code={"older code": 1})
+    assert at_the_start(there, tmp_path, "1 worker", 1, 1).splitlines() == [
+        "1 of the runs there was made by older code; --strict redoes it",
+        f"0 runs to do in {tmp_path}, 1 is there already; on 1 worker",
+    ]
+    assert at_the_end(Tally(1, 0, {}), there, tmp_path).splitlines()[0] == (
+        "1 run: 1 succeeded, 0 did not, 0 failed to run, 1 of them was there before"
+    )
 
 
 def test_lines_that_were_no_runs_make_none_again(harmed):

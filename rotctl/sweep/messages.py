@@ -90,13 +90,15 @@ def at_the_start(
     lines = [*plan.notes, *(f"simulated again: {reason}" for reason in plan.replaced)]
     lines += _fewer(points, runs)
     for code, count in plan.other_code.items():
-        lines.append(f"{count} of the runs there were made by {code}; --strict redoes them")
+        were, them = ("was", "it") if count == 1 else ("were", "them")
+        lines.append(f"{count} of the runs there {were} made by {code}; --strict redoes {them}")
     if others:
         lines.append(
             f"{_many(others)} of other sweeps {'is' if others == 1 else 'are'} in {folder}: the "
             "claims are judged over all that they are about, there too; --out DIR keeps them apart"
         )
-    there = f", {len(plan.done)} are there already" if plan.done else ""
+    are = "is" if len(plan.done) == 1 else "are"
+    there = f", {len(plan.done)} {are} there already" if plan.done else ""
     lines.append(f"{_many(len(plan.left))} to do in {folder}{there}; on {where}")
     return "\n".join(lines)
 
@@ -113,7 +115,8 @@ def _many(runs: int) -> str:
 
 def at_the_end(tally: Tally, plan: Plan, folder: Path) -> str:
     """The result in a line, and where to look next."""
-    before = f", {len(plan.done)} of them were there before" if plan.done else ""
+    were = "was" if len(plan.done) == 1 else "were"
+    before = f", {len(plan.done)} of them {were} there before" if plan.done else ""
     return (
         f"{_many(tally.count)}: {tally.succeeded} succeeded, {tally.fell} did not, "
         f"{len(tally.broken)} failed to run{before}\n"
