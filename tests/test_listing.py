@@ -48,7 +48,9 @@ def test_the_opening_comment_describes_a_file_that_does_not_describe_itself(conf
     (conf / "start" / "b.yaml").write_text("# Not this.\nname: b\ndescription: This.\n")
     (conf / "start" / "c.yaml").write_text("name: c\n")
     (conf / "start" / "d.yaml").write_text("")
-    assert groups() == {"start": {"a": "A start.", "b": "This.", "c": "", "d": ""}}
+    (conf / "start" / "e.yaml").write_text("title: Of an experiment.\n")
+    told = {"a": "A start.", "b": "This.", "c": "", "d": "", "e": "Of an experiment."}
+    assert groups() == {"start": told}
 
 
 def test_configs_inside_the_package_come_first(conf, tmp_path):
