@@ -4,8 +4,8 @@
 # Expected: a joint with six channels is at the place that its frames give, as the root is. Exporters that write six for every joint leave OFFSET at 0, or let limbs stretch.
 #   A converter to world positions uses the numbers, as it reads them, or refuses a file with such joints.
 # Happens: only the root's places are used. Those of other joints are read, so that all later columns are right, and put aside: the joint is at its OFFSET. Where OFFSET is 0 a
-#   leg of 0.8 m has hip, knee and ankle in one point, only an End Site sticks out; where OFFSET is the length at rest a shin that grows by 5 cm stays as it was. Of the root it
-#   is the other way round: its OFFSET is put aside, and counts in other readers. Rotations, of any order, are right. Nothing is said.
+#   leg of 0.8 m has hip, knee and ankle in one point, only an End Site sticks out; where OFFSET is the length at rest a shin that grows by 5 cm stays as it was. Rotations
+#   are right. Nothing is said.
 # Seen with: bvh-converter 1.0.2 (process_bvhfile, process_bvhkeyframe and the command), bvhio 1.5.4 beside it. Issue 121 of deep-motion-editing tells of files with OFFSET 0;
 #   of this one none was found. Readers don't agree on whether such places come on top of OFFSET or instead of it; with OFFSET 0 both are one.
 # Means: with OFFSET 0 one sees it. With the lengths at rest, and places that follow a real body by some centimetres, heights of hands and feet, contacts and the centre of mass
