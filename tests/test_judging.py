@@ -133,6 +133,16 @@ def test_of_runs_of_many_kinds_the_criteria_of_each_are_told(tmp_path, capsys, m
     assert capsys.readouterr().err in (first, second)  # by their ids
 
 
+def test_of_runs_of_very_many_kinds_the_first_criteria_are_told(tmp_path, capsys, monkeypatch):
+    kinds = "forward_roll_1,stand,back_flip,turn_over,handstand"
+    swept(tmp_path, f"behaviour={kinds}", "duration=0.2", "seed=2000")
+    without_processes(monkeypatch)
+    assert main(["judge", str(tmp_path), "criteria.no=3"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("unknown key 'criteria.no'") == 3
+    assert said.endswith("; and 2 more\n")
+
+
 def test_a_sweep_with_other_criteria_judges_what_is_there(tmp_path):
     swept(tmp_path, *GRID)
     before = [simulated(log) for log in logs(tmp_path)]

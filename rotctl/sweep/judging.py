@@ -21,6 +21,7 @@ from rotctl.sweep.engines import Engine, Failure
 
 NOT_JUDGED = "not judged"
 BEFORE = "success_before"
+FEW = 3  # reasons that are told one by one
 NO_LOG = "its log was not kept; rotctl sweep --keep all makes it again"
 
 
@@ -138,9 +139,8 @@ def judge(
             continue
         asked.append((run, Question(folder / run.log, config, metrics)))
     if not asked:
-        reasons = dict.fromkeys(run.reason for run in found.values() if run.reason)
-        said = "; ".join(reasons or ["none is done"])
-        raise InputError(f"{folder}: no run can be judged: {said}")
+        reasons = [run.reason for run in found.values() if run.reason]
+        raise InputError(f"{folder}: no run can be judged: {_each(reasons or ['none is done'])}")
     before = {run.run_id: bool(run.outcome["success"]) for run, _ in asked}
     questions = [question for _, question in asked]
     complaints: Counter[str] = Counter()
@@ -157,8 +157,8 @@ def judge(
                 remarks.update(result.remarks)
             progress()
     if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
-        reasons = dict.fromkeys(found[run.run_id].reason for run, _ in asked)
-        raise InputError(f"{folder}: no run can be judged: {'; '.join(reasons)}")
+        reasons = [found[run.run_id].reason for run, _ in asked]
+        raise InputError(f"{folder}: no run can be judged: {_each(reasons)}")
     for complaint, count in complaints.items():
         if count == len(asked):
             raise InputError(complaint)
@@ -178,6 +178,13 @@ def judge(
 
 def _many(runs: int) -> str:
     return f"{runs} run{'s' * (runs != 1)}"
+
+
+def _each(reasons: Sequence[str]) -> str:
+    """The first few reasons: runs of several kinds have each their own."""
+    told = list(dict.fromkeys(reasons))
+    more = [f"and {len(told) - FEW} more"] if len(told) > FEW else []
+    return "; ".join(told[:FEW] + more)
 
 
 def _without(run: StoredRun, reason: str) -> StoredRun:
