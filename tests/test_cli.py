@@ -386,16 +386,22 @@ def test_a_reader_that_has_seen_enough_is_no_error():
     assert process.wait(timeout=PATIENCE) == 0
 
 
-def test_nor_does_he_make_a_good_end_of_a_bad_one(made, tmp_path):
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("told", [subprocess.PIPE, subprocess.STDOUT])
+def test_the_exit_code_is_the_commands_own_where_nobody_reads_what_it_prints(
+    made, tmp_path, unbuffered, told
+):
+    """Neither stdout nor, where `told` goes there too, stderr."""
     log = RunLog.open(made[2])
     other = changed(log, tmp_path, {"trajectory/ctrl": 2.0 * log["trajectory/ctrl"]})
-    usual = {key: value for key, value in os.environ.items() if key != "PYTHONUNBUFFERED"}
-    process = subprocess.Popen(
-        command("verify", other.path), stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=usual
-    )
-    process.stdout.close()
-    assert process.stderr.read() == b""
-    assert process.wait(timeout=PATIENCE) == 1
+    environment = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+    for words, code in ((["verify", other.path], 1), (["run", "seed=a"], 2), (["--help"], 0)):
+        process = subprocess.Popen(
+            command(*words), stdout=subprocess.PIPE, stderr=told, env=environment
+        )
+        process.stdout.close()
+        said = process.stderr.read() if process.stderr else b""
+        assert (process.wait(timeout=PATIENCE), b"Broken pipe" in said) == (code, False)
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has it")

@@ -1,4 +1,4 @@
-"""The command line: errors, interrupts and broken pipes become one line and an exit code."""
+"""The command line: errors and interrupts become one line and an exit code."""
 
 import argparse
 import atexit
@@ -8,10 +8,10 @@ import os
 import sys
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 
 from rotctl.cli.interrupting import interruptible
 from rotctl.cli.parser import parse
+from rotctl.cli.unread import drop, left_unread
 from rotctl.cli.wording import one_line
 from rotctl.engine import mujoco_without_opengl
 from rotctl.errors import RotctlError
@@ -35,7 +35,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of workers
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # any path can be printed
-    arguments = parse(argv)
+    with left_unread():
+        return _told(parse(argv))
+
+
+def _told(arguments: argparse.Namespace) -> int:
+    """Do what a command line says, and tell what is wrong; its exit code."""
     try:
         with interruptible():
             return _commanded(arguments)
@@ -48,11 +53,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print(f"rotctl: interrupted; {arguments.interrupted}", file=sys.stderr)
         return 130
-    except BrokenPipeError:  # whoever read our output has seen enough
-        _drop_stdout()
-        return 0
     except OSError as error:
-        _drop_stdout()
+        drop(sys.stdout)
         what = f"{error.filename or 'output'}: {error.strerror or error}"
         print(f"rotctl: {one_line(what)}", file=sys.stderr)
         return 2
@@ -70,15 +72,6 @@ def _commanded(arguments: argparse.Namespace) -> int:
         mujoco_without_opengl()  # by itself it raises where the one that is chosen does not work
     with own(arguments.config_dir):
         code = int(arguments.command(arguments))
-        try:
-            if sys.stdout:  # None where the shell has closed it
-                sys.stdout.flush()
-        except BrokenPipeError:  # what was found is found, read to its end or not
-            _drop_stdout()
+        if sys.stdout:  # None where the shell has closed it
+            sys.stdout.flush()
         return code
-
-
-def _drop_stdout() -> None:
-    """Keep the interpreter from flushing to a closed or full stdout once more."""
-    with suppress(OSError, AttributeError):  # it is no file, or None
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
