@@ -114,6 +114,25 @@ def test_the_clearances_are_how_near_it_comes_to_where_it_last_stood_and_to_the_
     assert found.edge_clearance < found.clearance - 0.1
 
 
+@pytest.mark.parametrize(
+    ("behaviour", "target", "heading"),
+    [("dive_backward", -540, 148), ("dive_forward", 540, 35), ("dive_armstand_forward", 360, 20)],
+)
+def test_the_edge_lies_across_x_whichever_way_a_dive_heads(behaviour, target, heading):
+    """By kinematics of the logged states, from the highest one on, or from below the hands."""
+    way = [f"behaviour={behaviour}", f"behaviour.target_excursion={target}", "terrain.height=5"]
+    scenario = build(load([*way, f"behaviour.heading={heading}", "seed=2000", "duration=5"]))
+    log, edge = in_memory(scenario)[0].arrays(), scenario.config.terrain.edge
+    criteria = scenario.config.criteria
+    (first, _), row = dive.longest_flight(log), dive.entry(log)
+    heights = log["trajectory/com"][first:row, 2]
+    top = first + int(np.argmax(heights < 0.0 if criteria.held else heights))
+    places = [place for each in range(top, row) for place in ends(scenario, log, each)]
+    near = min(np.hypot(max(p[0] - edge, 0.0), max(p[2], 0.0)) for p in places)
+    found = dive.measure(log, criteria, float(target), PERIOD).edge_clearance
+    assert found == pytest.approx(near, abs=0.003)
+
+
 def test_who_never_enters_has_no_numbers(back):
     scenario, log = back
     stays = {**log, "command/stage": np.zeros_like(log["command/stage"])}

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,7 +10,23 @@ from rotctl.metrics.columns import Arrays, floats, frame
 from rotctl.metrics.criteria.flip import longest_flight
 
 PLATFORM = 0.0  # [m] height of its top
-Corner = Callable[[Arrays, int, np.ndarray], tuple[float, float]]
+
+
+class Corner(NamedTuple):
+    """What a dive is to keep from.
+
+    Attributes:
+        ahead: (3,) the way from there to where nothing is, unit, world.
+        end: how far that way it lies [m].
+        floor: its height [m].
+    """
+
+    ahead: np.ndarray
+    end: float
+    floor: float
+
+
+_Finder = Callable[[Arrays, int, np.ndarray], Corner]
 
 
 def middle(log: Arrays, names: tuple[str, ...]) -> np.ndarray:
@@ -38,7 +55,7 @@ def touched(log: Arrays, row: int, hands: bool = False) -> bool:
     return bool((np.asarray(log["contacts/body"])[way] >= 0).any())
 
 
-def clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool = False) -> float:
+def clearance(log: Arrays, row: int, sense: float, corner: _Finder, hands: bool = False) -> float:
     """How near the watched points come to a corner of the platform, or behind it [m].
 
     Who turns backward (`sense` -1) goes backward. Who was spawned in the air stood nowhere: NaN,
@@ -48,11 +65,10 @@ def clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool =
     if not first:
         return math.nan
     way = _falling(log, row, hands)
-    ahead, up = sense * frame(log)[0], frame(log)[2]
-    end, floor = corner(log, first, ahead)
+    ahead, end, floor = corner(log, first, sense * frame(log)[0])
     if math.isnan(end):
         return math.nan
-    near = math.inf
+    near, up = math.inf, frame(log)[2]
     for names in (("hand_l", "hand_r"), ("foot_l", "foot_r"), ("head",), ("pelvis",)):
         place = middle(log, names)[way]
         beyond = np.maximum((place * ahead).sum(axis=1) - end, 0.0)
@@ -61,8 +77,8 @@ def clearance(log: Arrays, row: int, sense: float, corner: Corner, hands: bool =
     return near
 
 
-def stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
-    """The foremost place that it last stood on: how far ahead, and its height in the world [m].
+def stood(log: Arrays, first: int, ahead: np.ndarray) -> Corner:
+    """The foremost place that it last stood on.
 
     Args:
         first: row of the flight.
@@ -70,16 +86,16 @@ def stood(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
     """
     places = np.asarray(log["contacts/position"])[first - 1]
     used = np.asarray(log["contacts/body"])[first - 1] >= 0
-    return max(float((p * ahead).sum()) for p in places[used]), float(places[used][0, 2])
+    end = max(float((place * ahead).sum()) for place in places[used])
+    return Corner(ahead, end, float(places[used][0, 2]))
 
 
-def edge(log: Arrays, first: int, ahead: np.ndarray) -> tuple[float, float]:
-    """Where the ground below the centre of mass falls away, as `stood`; NaN if it never does.
+def edge(log: Arrays, first: int, ahead: np.ndarray) -> Corner:
+    """Where the ground below the centre of mass falls away; an end of NaN if it never does.
 
-    Half-way between the two steps around it, which is within half a step's way of it.
+    Half-way between the two steps around it, which is within half a step's way of it. Whoever goes
+    over it aslant, it is a line across x.
     """
     falls = np.flatnonzero(np.diff(floats(log, "trajectory/ground_height")) < 0.0)
-    if not len(falls):
-        return math.nan, PLATFORM
-    com = floats(log, "trajectory/com")[falls[0] : falls[0] + 2]
-    return float((com * ahead).sum(axis=1).mean()), PLATFORM
+    x = floats(log, "trajectory/com")[falls[0] : falls[0] + 2, 0] if len(falls) else math.nan
+    return Corner(np.array([1.0, 0.0, 0.0]), float(np.mean(x)), PLATFORM)
