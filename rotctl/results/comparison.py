@@ -17,6 +17,7 @@ from rotctl.settings import plain
 
 _NOT_FIGURES = ("run_id", "real_time_factor", "wall_time")
 FEW = 4  # values of a key that are told one by one
+LONGEST = 80  # letters of a text, or of several
 NAME = ".name"  # of a choice, in its group
 _SPREAD = ("_q25", "_median", "_q75")
 
@@ -136,8 +137,11 @@ def _one_or_several(values: Sequence[Any]) -> Any:
 
 def _order(value: Any) -> tuple[bool, float, str]:
     """Numbers by their size, of which 1 and 1.0 are one, and then all else."""
-    number = isinstance(value, int | float)
-    return (False, value, "") if number else (True, 0.0, repr(value))
+    return (False, value, "") if _is_number(value) else (True, 0.0, repr(value))
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _figures(outcome: Mapping[str, Any]) -> dict[str, Any]:
@@ -145,26 +149,71 @@ def _figures(outcome: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _table(title: str, one: Mapping[str, Any], other: Mapping[str, Any], *names: Path) -> list[str]:
-    keys = [key for key in dict.fromkeys([*one, *other]) if one.get(key) != other.get(key)]
+    keys = [key for key in dict.fromkeys([*one, *other]) if _differ(one.get(key), other.get(key))]
     keys = keys if title == "figures" else sorted(keys)
     if not keys:
         return [f"{title}: the same"]
     rows = [[title, *map(str, names)]]
-    rows += [[key, _text(one.get(key)), _text(other.get(key))] for key in keys]
+    rows += [[key, *_texts(one.get(key), other.get(key))] for key in keys]
     wide = [max(len(row[i]) for row in rows) for i in range(2)]
     return [f"{row[0]:{wide[0]}}  {row[1]:{wide[1]}}  {row[2]}".rstrip() for row in rows]
 
 
-def _text(value: Any) -> str:
+def _differ(one: Any, other: Any) -> bool:
+    if isinstance(one, Several) and isinstance(other, Several):
+        return [*map(_order, one.values)] != [*map(_order, other.values)]
+    return isinstance(one, bool) != isinstance(other, bool) or bool(one != other)
+
+
+def _texts(one: Any, other: Any) -> tuple[str, str]:
+    """Of both sides, exactly or with what only one has where else they would look the same."""
+    for exact in (False, True):
+        ours, theirs = _text(one, exact), _text(other, exact)
+        if ours != theirs:
+            return ours, theirs
+    if isinstance(one, Several) and isinstance(other, Several):
+        return ours + _alone(one, other), theirs + _alone(other, one)
+    return ours, theirs
+
+
+def _alone(one: Several, other: Several) -> str:
+    there = {_order(value) for value in other.values}
+    alone = [_text(value, exact=True) for value in one.values if _order(value) not in there]
+    more = f" and {len(alone) - FEW} more" if len(alone) > FEW else ""
+    return f"; only here: {', '.join(alone[:FEW])}{more}" if alone else ""
+
+
+def _text(value: Any, exact: bool = False) -> str:
+    """For people.
+
+    Args:
+        exact: with all digits, and all of a text.
+    """
     if isinstance(value, Some):
-        return f"{_text(value.figure)} of {value.runs}"
+        return f"{_text(value.figure, exact)} of {value.runs}"
     if isinstance(value, Several):
-        told = [_text(each) for each in value.values]
-        few = len(told) <= FEW
-        return ", ".join(told) if few else f"{len(told)} values, {told[0]} to {told[-1]}"
+        return _clipped(_several(value.values, exact))
     if isinstance(value, tuple):
-        low, middle, high = map(_text, value)
+        low, middle, high = (_text(each, exact) for each in value)
         return middle if low == middle == high else f"{middle} [{low}, {high}]"
     if isinstance(value, float):
-        return f"{value:.4g}"
-    return "-" if value is None else json.dumps(value) if isinstance(value, str) else str(value)
+        return str(value) if exact else f"{value:.4g}"
+    if isinstance(value, str):
+        return json.dumps(value) if exact else _clipped(json.dumps(value))
+    return "-" if value is None else str(value)
+
+
+def _several(values: Sequence[Any], exact: bool) -> str:
+    """One by one; of many how many, and of numbers from where to where."""
+    many = len(values) > FEW
+    if many and not all(map(_is_number, values)):
+        return f"{len(values)} values"
+    shown = (values[0], values[-1]) if many else values
+    told = [_text(value, exact) for value in shown]
+    if len({*told}) < len(told):
+        told = [_text(value, exact=True) for value in shown]
+    return f"{len(values)} values, {told[0]} to {told[1]}" if many else ", ".join(told)
+
+
+def _clipped(text: str) -> str:
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."
