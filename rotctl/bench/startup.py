@@ -7,6 +7,8 @@ import tempfile
 import time
 from statistics import median
 
+from rotctl.amounts import count
+
 SECONDS = 20.0
 
 
@@ -17,7 +19,7 @@ def processes(repeats: int) -> str:
     for substeps in (1, 4):
         walls, loops = zip(*(_run(substeps) for _ in range(repeats)), strict=True)
         wall, loop = median(walls), median(loops)
-        name = f"rotctl run, {SECONDS:g} s, {substeps} substep{'s' * (substeps > 1)}"
+        name = f"rotctl run, {SECONDS:g} s, {count(substeps, 'substep')}"
         lines.append(
             f"{name:34}{wall:8.2f}  start-up and writing the log {wall - loop:.2f}; "
             f"real-time factor {SECONDS / loop:.0f} without them, {SECONDS / wall:.1f} with them"

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from rotctl import files
+from rotctl.amounts import count
 from rotctl.choices.contents import MOST_VALUES
 from rotctl.errors import InputError, LogError
 from rotctl.log import LOG_NAME
@@ -76,8 +77,7 @@ class Index:
     @property
     def complaint(self) -> str:
         """That lines could not be used; empty if all could."""
-        lines = "line" if self.damaged == 1 else "lines"
-        return f"{self.damaged} {lines} damaged, left out" if self.damaged else ""
+        return f"{count(self.damaged, 'line')} damaged, left out" if self.damaged else ""
 
 
 def stamp(path: str | Path) -> Stamp | None:

@@ -8,6 +8,7 @@ from concurrent.futures import CancelledError
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from uuid import uuid4
 
+from rotctl.amounts import count
 from rotctl.errors import RotctlError
 from rotctl.sweep.apart import Death, apart
 from rotctl.sweep.engines import TOGETHER, Failure, carried_out, died
@@ -49,8 +50,8 @@ class DaskEngine:
     @property
     def where(self) -> str:
         """Where the tasks run, for people."""
-        workers = self.workers
-        return f"{self._address} with {workers or 'no'} worker{'s' * (workers != 1)} so far"
+        n = self.workers
+        return f"{self._address} with {count(n, 'worker') if n else 'no workers'} so far"
 
     @property
     def workers(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from rotctl.amounts import count
 from rotctl.config.schema import Config, check
 from rotctl.errors import InputError
 from rotctl.log import RunLog
@@ -159,14 +160,14 @@ def judge(
     if all(found[run.run_id].status == NOT_JUDGED for run, _ in asked):
         reasons = [found[run.run_id].reason for run, _ in asked]
         raise InputError(f"{folder}: no run can be judged: {_each(reasons)}")
-    for complaint, count in complaints.items():
-        if count == len(asked):
+    for complaint, n in complaints.items():
+        if n == len(asked):
             raise InputError(complaint)
-        notes.append(f"{_many(count)}: {complaint}")
-    notes += [f"{_many(count)}: {remark}" for remark, count in remarks.items()]
+        notes.append(f"{count(n, 'run')}: {complaint}")
+    notes += [f"{count(n, 'run')}: {remark}" for remark, n in remarks.items()]
     after = {name: bool(run.outcome["success"]) for name, run in found.items() if run.outcome}
     untold = Counter(run.reason for run in found.values() if run.status == NOT_JUDGED)
-    notes += [f"{_many(count)} not judged: {reason}" for reason, count in untold.items()]
+    notes += [f"{count(n, 'run')} not judged: {reason}" for reason, n in untold.items()]
     table = tabulated(list(found.values()), notes)
     table.rows[BEFORE] = table.rows["run_id"].map(before)
     return Judged(
@@ -174,10 +175,6 @@ def judge(
         lost=sum(before[name] and not success for name, success in after.items()),
         won=sum(success and not before[name] for name, success in after.items()),
     )
-
-
-def _many(runs: int) -> str:
-    return f"{runs} run{'s' * (runs != 1)}"
 
 
 def _each(reasons: Sequence[str]) -> str:

@@ -8,6 +8,7 @@ from multiprocessing import connection
 from multiprocessing.connection import Connection
 from typing import TypeVar
 
+from rotctl.amounts import count
 from rotctl.errors import InputError
 from rotctl.sweep.engines import TOGETHER, Failure, died
 from rotctl.sweep.worker import Worker
@@ -38,7 +39,7 @@ class LocalEngine:
     @property
     def where(self) -> str:
         """Where the tasks run, for people."""
-        return "1 local process" if self._jobs == 1 else f"{self._jobs} local processes"
+        return count(self._jobs, "local process", "local processes")
 
     @property
     def workers(self) -> int:

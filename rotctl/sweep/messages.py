@@ -7,6 +7,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+from rotctl.amounts import count
 from rotctl.config.schema import Config
 from rotctl.errors import InputError
 from rotctl.log import LOG_NAME
@@ -40,14 +41,14 @@ def without_running(
         and (run.run_id not in listed or not suffices(listed[run.run_id], wish(run.run_id)))
     ]
     lines = _fewer(points, len(runs))
-    lines.append(f"{_many(len(runs))}, {len(left)} of them not yet in {folder}")
+    lines.append(f"{count(len(runs), 'run')}, {len(left)} of them not yet in {folder}")
     lines += [f"  {run.run_id}  {_values(run)}" for run in left[:FEW]]
     if len(left) > FEW:
         lines.append(f"  ... and {len(left) - FEW} more")
     if left:
         cost, log, lasted = _trial(left[0].config)
         seconds = cost * sum(run.config.duration for run in left) / max(1, workers)
-        on = f"{max(1, workers)} worker{'s' * (workers > 1)}"
+        on = count(max(1, workers), "worker")
         lines.append(f"about {duration(seconds)} on {on}, if they are as fast as this machine")
         stored = sum(run.config.duration for run in left if wish(run.run_id) != NEVER)
         most = "up to " if keep.mode == "failures" else ""
@@ -73,9 +74,9 @@ def _trial(config: Config) -> tuple[float, int, float]:
     return (time.perf_counter() - begin) / tried.duration, len(log), tried.duration
 
 
-def _size(count: float) -> str:
+def _size(size: float) -> str:
     """Bytes for people."""
-    return f"{count / 1e9:.1f} GB" if count >= 1e9 else f"{max(1.0, count / 1e6):.0f} MB"
+    return f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(1.0, size / 1e6):.0f} MB"
 
 
 def at_the_start(
@@ -89,28 +90,25 @@ def at_the_start(
     """
     lines = [*plan.notes, *(f"simulated again: {reason}" for reason in plan.replaced)]
     lines += _fewer(points, runs)
-    for code, count in plan.other_code.items():
-        were, them = ("was", "it") if count == 1 else ("were", "them")
-        lines.append(f"{count} of the runs there {were} made by {code}; --strict redoes {them}")
+    for code, n in plan.other_code.items():
+        were, them = ("was", "it") if n == 1 else ("were", "them")
+        lines.append(f"{n} of the runs there {were} made by {code}; --strict redoes {them}")
     if others:
+        are = "is" if others == 1 else "are"
         lines.append(
-            f"{_many(others)} of other sweeps {'is' if others == 1 else 'are'} in {folder}: the "
-            "claims are judged over all that they are about, there too; --out DIR keeps them apart"
+            f"{count(others, 'run')} of other sweeps {are} in {folder}: the claims are judged over "
+            "all that they are about, there too; --out DIR keeps them apart"
         )
     are = "is" if len(plan.done) == 1 else "are"
     there = f", {len(plan.done)} {are} there already" if plan.done else ""
-    lines.append(f"{_many(len(plan.left))} to do in {folder}{there}; on {where}")
+    lines.append(f"{count(len(plan.left), 'run')} to do in {folder}{there}; on {where}")
     return "\n".join(lines)
 
 
 def _fewer(points: int, runs: int) -> list[str]:
     """A line on points of a grid that are fewer runs; none if they are as many."""
     why = "some are the same, or set a key that a later one sets again"
-    return [f"{points} points are {_many(runs)}: {why}"] if points > runs else []
-
-
-def _many(runs: int) -> str:
-    return f"{runs} run{'s' * (runs != 1)}"
+    return [f"{points} points are {count(runs, 'run')}: {why}"] if points > runs else []
 
 
 def at_the_end(tally: Tally, plan: Plan, folder: Path) -> str:
@@ -118,7 +116,7 @@ def at_the_end(tally: Tally, plan: Plan, folder: Path) -> str:
     were = "was" if len(plan.done) == 1 else "were"
     before = f", {len(plan.done)} of them {were} there before" if plan.done else ""
     return (
-        f"{_many(tally.count)}: {tally.succeeded} succeeded, {tally.fell} did not, "
+        f"{count(tally.count, 'run')}: {tally.succeeded} succeeded, {tally.fell} did not, "
         f"{len(tally.broken)} failed to run{before}\n"
         f"next       rotctl summarise {shlex.quote(str(folder))}"
     )
@@ -128,8 +126,7 @@ def failures(tally: Tally, runs: list[Planned]) -> str:
     """All runs without a result and why, one a line, in the order of the sweep."""
     listed = [run for run in runs if run.run_id in tally.broken]
     lines = [f"  {run.run_id}  {_values(run)}: {tally.broken[run.run_id]}" for run in listed]
-    count = f"{len(listed)} run{'s' * (len(listed) > 1)}"
-    return "\n".join([f"{count} failed to run:", *lines])
+    return "\n".join([f"{count(len(listed), 'run')} failed to run:", *lines])
 
 
 def _values(run: Planned) -> str:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
+from rotctl.amounts import count
 from rotctl.report.site import outcomes, panels, pushes
 from rotctl.report.site.grid import Grid
 from rotctl.report.site.panels import Paper
-from rotctl.report.site.words import count
 
 LIGHT = Paper("#ffffff", "#1c222c", "#5d6876", "#e3e8ed")
 DARK = Paper("#11161d", "#e8edf3", "#9aa7b6", "#28313d")

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from rotctl.report.site.words import NOTHING, count, number, ranges
+from rotctl.amounts import count
+from rotctl.report.site.words import NOTHING, number, ranges
 from rotctl.report.title import plain
 from rotctl.results.configs import config_hash
 from rotctl.results.stored_runs import DONE

@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from rotctl.amounts import count
 from rotctl.report.axes import BLUE, GREEN, ORANGE
 from rotctl.report.site.panels import Paper
-from rotctl.report.site.words import count, kind
+from rotctl.report.site.words import kind
 from rotctl.results.stored_runs import DONE
 
 # Blue is for success.

@@ -8,6 +8,7 @@ from itertools import islice
 
 from hydra.core.override_parser.types import ChoiceSweep, RangeSweep
 
+from rotctl.amounts import count
 from rotctl.choices.overrides import parsed
 from rotctl.errors import InputError
 from rotctl.metrics.claims import (
@@ -21,7 +22,7 @@ from rotctl.metrics.claims import (
 )
 from rotctl.metrics.measured import SUCCESS_RATE
 from rotctl.report.site.rows import Row, rows
-from rotctl.report.site.words import count, quantity
+from rotctl.report.site.words import quantity
 from rotctl.results.experiments import Experiment
 from rotctl.results.sweeps import Sweep
 

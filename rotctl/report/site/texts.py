@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from xml.etree import ElementTree as Xml
 
+from rotctl.amounts import count
 from rotctl.metrics.claims import NOT_TESTED, REPRODUCED
 from rotctl.report.site.study import (
     Line,
@@ -21,7 +22,7 @@ from rotctl.report.site.study import (
     tally,
     warnings,
 )
-from rotctl.report.site.words import claimed, count, expectation, outcome
+from rotctl.report.site.words import claimed, expectation, outcome
 from rotctl.report.title import plain
 
 COLUMNS = (

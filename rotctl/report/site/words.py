@@ -112,11 +112,6 @@ def kind(reason: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + _ANY
 
 
-def count(n: int, one: str, many: str = "") -> str:
-    """`1 run`, `3 runs`."""
-    return f"{n} {one if n == 1 else many or one + 's'}"
-
-
 def ranges(numbers: Iterable[int]) -> str:
     """Whole numbers in a few words: `0-4, 7`."""
     found: list[list[int]] = []
