@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# World positions by bvh-converter, of a BVH file whose joints all have places of their own in each frame: every joint lies in the hip.
+# World positions by bvh-converter, of a BVH file whose joints all have places of their own in each frame: every joint lies at its OFFSET, with 0 in the hip.
 #
 # Expected: a joint with six channels is at the place that its frames give, as the root is. Exporters that write six for every joint leave OFFSET at 0, or let limbs stretch.
 #   A converter to world positions uses the numbers, as it reads them, or refuses a file with such joints.
