@@ -9,6 +9,7 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from rotctl import __version__
+from rotctl.amounts import count
 from rotctl.files import encoded
 from rotctl.metrics.claims import NOT_REPRODUCED, NOT_TESTED, PARTLY, REPRODUCED
 from rotctl.metrics.measured import SUCCESS_RATE
@@ -54,9 +55,9 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    names = ("quantity", "claimed", "number", "with_unit", "outcome", "expectation", "count")
+    names = ("quantity", "claimed", "number", "with_unit", "outcome", "expectation")
     helpers: dict[str, Callable[..., Any]] = {name: getattr(words, name) for name in names}
-    made.globals.update(helpers, looks=LOOKS, success_rate=SUCCESS_RATE)
+    made.globals.update(helpers, count=count, looks=LOOKS, success_rate=SUCCESS_RATE)
     return made
 
 
