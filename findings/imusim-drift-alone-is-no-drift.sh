@@ -6,7 +6,7 @@
 # Happens: whether there is a random walk depends on bias_instability: without one, random_walk does nothing. With a bias instability of 1e-9 it does what was asked. Offset, noise and
 #   drift are added to the ideal sensor itself, so that an offset of 1 deg/s, asked for three times, is 3, and set_gyroscope() without a fault afterwards leaves 3. After four
 #   calls with one and the same noise there is twice as much. Nothing is said. set_accelerometer goes by the same code.
-# Seen with: imusim 1.1.2 (imusim.py, the model of a sensor), numpy 2.4.6, scipy 1.17.1. Its page tells how to call it and nothing of an order.
+# Seen with: imusim 1.1.2 (imusim.py, the model of a sensor), numpy 2.4.6, scipy 1.17.1. Its README tells nothing of the keywords.
 # Means: the first costs whoever tests an estimator of attitude its slow drift, and with it all reason to estimate a bias; the second makes a sweep over qualities of sensors
 #   worse from run to run, in the order in which they are tried. Give a tiny bias_instability with random_walk, and make a new Simulator for each model.
 set -euo pipefail

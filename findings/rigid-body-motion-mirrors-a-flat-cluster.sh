@@ -6,7 +6,7 @@
 # Happens: the product of two orthogonal matrices that it forms is a mirror image about half of the time when the vectors lie in one plane, as there the third direction may
 #   have either sign. best_fit_transform turns that sign round; best_fit_rotation does not ask, and makes a quaternion of a matrix that is no rotation. It has length 1 and
 #   looks like any other. Of 200 turns of three or four vectors in a plane, without noise, 100 and 108 are wrong, by up to 180 degrees; out of one plane all are met.
-# Seen with: rigid-body-motion 0.9.3 (estimators.py, the two functions side by side), numpy-quaternion 2024.0.13, numpy 2.4.6, scipy 1.17.1. The documentation has no word of planes.
+# Seen with: rigid-body-motion 0.9.3 (estimators.py, the two functions side by side), numpy-quaternion 2024.0.13, numpy 2.4.6, scipy 1.17.1. The docstrings have no word of planes.
 # Means: three markers relative to their centroid always lie in one plane, and so do four on a plate, or the directions of an arm that only swings. The answer jumps between
 #   right and wrong from frame to frame, which looks like markers that changed names. Use best_fit_transform, or scipy's Rotation.align_vectors, which is right here.
 set -euo pipefail
