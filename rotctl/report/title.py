@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from rotctl.log import RunLog
+from rotctl.settings.complaints import clip
 
 # What a success was, by the columns that a kind of motion has.
 DONE = {
@@ -59,6 +60,4 @@ def verdict(outcome: dict[str, object]) -> tuple[bool | None, str]:
 
 def plain(value: object, longest: int = LONGEST) -> str:
     """A stranger's text on one printable line of so many characters at most."""
-    text = str(value)
-    shown = text if len(text) <= longest else f"{text[: longest - 3]}..."
-    return "".join(c if c.isprintable() else " " for c in shown)
+    return "".join(c if c.isprintable() else " " for c in clip(str(value), longest))

@@ -14,6 +14,7 @@ from rotctl.results.keys import value_at
 from rotctl.results.stored_runs import DONE, stored_runs
 from rotctl.results.table import tabulated
 from rotctl.settings import plain
+from rotctl.settings.complaints import clip
 
 _NOT_FIGURES = ("run_id", "real_time_factor", "wall_time")
 FEW = 4  # values of a key that are told one by one
@@ -192,14 +193,14 @@ def _text(value: Any, exact: bool = False) -> str:
     if isinstance(value, Some):
         return f"{_text(value.figure, exact)} of {value.runs}"
     if isinstance(value, Several):
-        return _clipped(_several(value.values, exact))
+        return clip(_several(value.values, exact), LONGEST)
     if isinstance(value, tuple):
         low, middle, high = (_text(each, exact) for each in value)
         return middle if low == middle == high else f"{middle} [{low}, {high}]"
     if isinstance(value, float):
         return str(value) if exact else f"{value:.4g}"
     if isinstance(value, str):
-        return json.dumps(value) if exact else _clipped(json.dumps(value))
+        return json.dumps(value) if exact else clip(json.dumps(value), LONGEST)
     return "-" if value is None else str(value)
 
 
@@ -213,7 +214,3 @@ def _several(values: Sequence[Any], exact: bool) -> str:
     if len({*told}) < len(told):
         told = [_text(value, exact=True) for value in shown]
     return f"{len(values)} values, {told[0]} to {told[1]}" if many else ", ".join(told)
-
-
-def _clipped(text: str) -> str:
-    return text if len(text) <= LONGEST else f"{text[: LONGEST - 3]}..."

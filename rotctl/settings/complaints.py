@@ -36,9 +36,9 @@ def brief(value: Any) -> str:
     return clip(str(value) if isinstance(value, float) else json.dumps(value, default=str))
 
 
-def clip(text: str) -> str:
+def clip(text: str, longest: int = LONGEST) -> str:
     """The text, or its beginning if it is long."""
-    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+    return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
 def complaint(shape: type, data: Any, errors: list[Any]) -> str:
